@@ -13,14 +13,14 @@ using base::Result;
 
 Gate::Stamp Gate::stamp() const {
     struct stat about {};
-    if (folder_.empty() || ::lstat(token_file_of(folder_).c_str(), &about) != 0) {
+    if (!folder_ || ::lstat(token_file_of(*folder_).c_str(), &about) != 0) {
         return {};
     }
     return {true,         about.st_ino,         about.st_size,        about.st_mode,
             about.st_uid, about.st_ctim.tv_sec, about.st_ctim.tv_nsec};
 }
 
-Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
+Result<Gate> Gate::open(const std::optional<std::string>& folder, bool token_needed) {
     Gate gate{folder, token_needed};
     gate.refresh();
     if (gate.file_problem_) {
@@ -29,12 +29,11 @@ Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
     if (token_needed && gate.tokens_.empty()) {
         return refusal(
             RefusalCode::FailedPrecondition,
-            folder.empty()
-                ? "any client on the network could control this server, and tokens need a folder: "
-                  "listen on 127.0.0.1, or name a folder with --data"
-                : "any client on the network could control this server, and there is no token yet: create one "
-                  "with `evod token add NAME --role admin --data " +
-                      folder + "`, or listen on 127.0.0.1 without --require-token and --http-host");
+            folder ? "any client on the network could control this server, and there is no token yet: create one "
+                     "with `evod token add NAME --role admin --data " +
+                         *folder + "`, or listen on 127.0.0.1 without --require-token and --http-host"
+                   : "any client on the network could control this server, and tokens need a folder: "
+                     "listen on 127.0.0.1, or name a folder with --data");
     }
     return gate;
 }
@@ -46,7 +45,7 @@ bool Gate::refresh() {
         return false;
     }
     stamp_ = now;
-    auto tokens = folder_.empty() ? Result<Tokens>{Tokens{}} : read_tokens(folder_);
+    auto tokens = folder_ ? read_tokens(*folder_) : Result<Tokens>{Tokens{}};
     file_problem_ = tokens ? std::nullopt : std::optional{tokens.error()};
     if (tokens) {
         tokens_ = *std::move(tokens);

@@ -34,11 +34,11 @@ class Gate {
     static constexpr std::chrono::minutes forgotten_after{10};
     static constexpr std::size_t addresses_max = 10'000;
 
-    /// folder        folder of the token file; empty: there is no token file.
+    /// folder        folder of the token file; nullopt: there is no token file.
     /// token_needed  true: a client without a token is refused; false: a client without a token becomes an admin.
     ///
     /// Refused if the token file is not trustworthy, or if a token is needed and the file contains none.
-    static base::Result<Gate> open(const std::string& folder, bool token_needed);
+    static base::Result<Gate> open(const std::optional<std::string>& folder, bool token_needed);
 
     /// Authenticates a client. Refuses with UNAUTHENTICATED if the token is missing or unknown, and with
     /// RESOURCE_EXHAUSTED if the token is unknown and the address must wait.
@@ -72,11 +72,12 @@ class Gate {
         friend bool operator==(const Stamp&, const Stamp&) = default;
     };
 
-    Gate(std::string folder, bool token_needed) : folder_{std::move(folder)}, token_needed_{token_needed} {}
+    Gate(std::optional<std::string> folder, bool token_needed)
+        : folder_{std::move(folder)}, token_needed_{token_needed} {}
     Stamp stamp() const;
     void fail(const std::string& address, Clock::time_point now);
 
-    std::string folder_;
+    std::optional<std::string> folder_;
     bool token_needed_;
     Tokens tokens_;
     std::optional<base::Refusal> file_problem_;

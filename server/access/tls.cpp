@@ -26,13 +26,6 @@ Refusal refusal(std::string message) {
 } // namespace
 
 Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
-    if (files.certificate.empty() != files.key.empty()) {
-        return refusal(files.key.empty() ? "--tls-cert requires --tls-key" : "--tls-key requires --tls-cert");
-    }
-    if (files.certificate.empty()) {
-        return files.client_ca.empty() ? Result<std::unique_ptr<ssl::context>>{nullptr}
-                                       : refusal("--tls-client-ca requires --tls-cert and --tls-key");
-    }
     struct stat about {};
     if (::stat(files.key.c_str(), &about) != 0) {
         return refusal("--tls-key: cannot read " + files.key + ": " + std::strerror(errno));
@@ -69,8 +62,8 @@ Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
         return refusal("--tls-key: " + files.key + " is not the private key for the certificate in " +
                        files.certificate);
     }
-    if (!files.client_ca.empty()) {
-        loaded = load("--tls-client-ca", files.client_ca,
+    if (files.client_ca) {
+        loaded = load("--tls-client-ca", *files.client_ca,
                       [&](const auto& pem, auto& error) { context->add_certificate_authority(pem, error); });
         if (!loaded) {
             return loaded.error();

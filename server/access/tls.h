@@ -6,19 +6,20 @@
 #include <boost/asio/ssl/context.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace evod::access {
 
 struct TlsFiles {
-    std::string certificate; // PEM file with the certificate chain; empty: no TLS
+    std::string certificate; // PEM file with the certificate chain
     std::string key;         // PEM file; only its owner and group may be able to read it
-    // PEM file with certificate authorities, one of which must have signed the certificate of a client; empty: clients
+    // PEM file with certificate authorities, one of which must have signed the certificate of a client; nullopt: clients
     // need no certificate
-    std::string client_ca;
+    std::optional<std::string> client_ca = {};
 };
 
-/// Returns nullptr if `files` contains no certificate. A refusal names the option, the file and the problem.
+/// A refusal names the option, the file and the problem.
 base::Result<std::unique_ptr<boost::asio::ssl::context>> server_context(const TlsFiles& files);
 
 } // namespace evod::access

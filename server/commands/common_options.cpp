@@ -40,7 +40,7 @@ bool use_instructions_of_environment() {
     return false;
 }
 
-std::string data_folder_or_default(const std::string& given) {
+std::optional<std::string> data_folder_or_default(const std::string& given) {
     if (!given.empty()) {
         return given;
     }
@@ -51,15 +51,17 @@ std::string data_folder_or_default(const std::string& given) {
     if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
         return std::string{home} + "/.local/state/evod";
     }
-    return {};
+    return std::nullopt;
 }
 
 bool find_data_folder(std::string& folder) {
-    folder = data_folder_or_default(folder);
-    if (folder.empty()) {
+    const auto found = data_folder_or_default(folder);
+    if (!found) {
         fail(no_data_folder);
+        return false;
     }
-    return !folder.empty();
+    folder = *found;
+    return true;
 }
 
 } // namespace evod::commands

@@ -5,6 +5,7 @@
 #include "server/base/result.h"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace evod::commands {
@@ -27,9 +28,9 @@ std::size_t default_thread_count();
 bool use_instructions_of_environment();
 
 /// The folder of run files and tokens. If `given` is empty, it is the folder of evod in the state folder of the XDG
-/// Base Directory Specification. Returns an empty text if the environment does not define that folder.
-std::string data_folder_or_default(const std::string& given);
-/// The error message for the case that data_folder_or_default() returns an empty text.
+/// Base Directory Specification. Returns nullopt if the environment does not define that folder.
+std::optional<std::string> data_folder_or_default(const std::string& given);
+/// The error message for the case that data_folder_or_default() returns nullopt.
 inline constexpr const char* no_data_folder =
     "there is no default folder for runs, because neither XDG_STATE_HOME nor HOME is set: name a folder with --data";
 

@@ -8,7 +8,7 @@
 #include "server/commands/plot_program.h"
 #include "server/commands/progress_line.h"
 #include "server/experiments/comparison_plan.h"
-#include "server/network/random_ids.h"
+#include "server/runtime/random_ids.h"
 
 #include <unistd.h>
 
@@ -183,7 +183,7 @@ void add_compare_command(command_line::Command& app) {
             .group("Experiments");
     auto& options = command.keep(CompareOptions{});
     auto& request = options.request;
-    request.drawn_seed = network::draw_seed();
+    request.drawn_seed = runtime::draw_seed();
     command
         .add_option("experiments", &request.experiments,
                     "Experiment files (JSON). With --controls: one file, or none for the default world. Otherwise: "

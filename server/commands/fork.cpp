@@ -4,8 +4,8 @@
 #include "server/base/inline_executor.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
-#include "server/network/random_ids.h"
 #include "server/run_file/data_folder.h"
+#include "server/runtime/random_ids.h"
 #include "server/simulation/world_name.h"
 
 #include <cstdint>
@@ -54,7 +54,7 @@ int fork(const ForkOptions& options) {
     }
     base::InlineExecutor executor;
     const auto moment = replay::fork(**origin, options.at_generation, folder->file_of(options.name), options.name,
-                                     network::draw_run_id(), executor);
+                                     runtime::draw_run_id(), executor);
     if (!moment) {
         return fail(with_fork_options(moment.error()));
     }

@@ -1,9 +1,7 @@
-// `evod parameters` and `evod limits`: print the lists in docs/PARAMETERS.md and docs/OPERATIONS.md from the registries
-// in the program.
+// `evod parameters`: prints docs/PARAMETERS.md from the registry in the program.
 #include "server/parameters/parameters.h"
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
-#include "server/network/limits.h"
 #include "server/parameters/choice_help.h"
 
 #include <iostream>
@@ -63,12 +61,6 @@ std::string parameter_list() {
 void add_parameters_command(command_line::Command& app) {
     app.add_command("parameters", "Print every parameter, as in docs/PARAMETERS.md").group("Help").action([] {
         std::cout << parameter_list();
-    });
-}
-
-void add_limits_command(command_line::Command& app) {
-    app.add_command("limits", "Print every limit of the network, as in docs/OPERATIONS.md").group("Help").action([] {
-        std::cout << network::limit_list();
     });
 }
 

@@ -10,8 +10,8 @@
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
 #include "server/experiments/run_recording.h"
-#include "server/network/random_ids.h"
 #include "server/replay/columns.h"
+#include "server/runtime/random_ids.h"
 #include "server/runtime/worker_pool.h"
 #include "server/simulation/world.h"
 
@@ -145,7 +145,7 @@ base::Result<Recording> open_recording(const RunOptions& options, Beginning& beg
         recording = *std::move(opened);
         experiment.seed = recording->seed() ? recording->seed() : experiment.seed;
     }
-    experiment.seed = experiment.seed.value_or(network::draw_seed());
+    experiment.seed = experiment.seed.value_or(runtime::draw_seed());
     return recording;
 }
 
@@ -420,7 +420,7 @@ int run(const RunOptions& options, const SharedWork& shared) {
                           output, cost};
     cost.start_s = seconds_since(start);
     if (*recording) {
-        simulation.written = (*recording)->begin(simulation.world, network::draw_run_id());
+        simulation.written = (*recording)->begin(simulation.world, runtime::draw_run_id());
     }
     simulation.run();
     if (!simulation.written) {

@@ -5,6 +5,7 @@
 #include "server/commands/common_options.h"
 #include "server/commands/serve_options.h"
 #include "server/log/log.h"
+#include "server/network/server.h"
 
 #include <sys/resource.h>
 
@@ -12,6 +13,7 @@
 #include <initializer_list>
 #include <string>
 #include <utility>
+#include <variant>
 
 namespace evod::commands {
 namespace {
@@ -79,20 +81,32 @@ void log_processes(const SharedWork& shared) {
     }
 }
 
+/// What the server serves at first, for the line that reports its address: ", world …", or ", replay of …".
+std::string content_of(const network::Server& server) {
+    if (const auto* run = std::get_if<network::ReplayedRun>(&server.options().worlds)) {
+        return ", replay of " + run->path;
+    }
+    const auto seed = server.first_seed();
+    const std::string& name = std::get<network::LiveWorlds>(server.options().worlds).first_world.world.name;
+    return seed ? ", world \"" + name + "\", seed " + std::to_string(seed->value) : "";
+}
+
 /// Runs the server until a signal or a ShutDown request ends it. Returns the exit status.
-int run_server(network::ServerOptions options) {
+int run_server(base::Result<network::ServerOptions> options) {
+    if (!options) {
+        return fail(options.error());
+    }
     raise_descriptor_limit();
-    const std::string folder = options.data_folder, first_world = options.first_world.name;
-    const bool encrypted = !options.tls.certificate.empty();
-    const std::string replay = options.replay ? ", replay of " + options.replay->path : "";
-    const auto server = network::Server::open(std::move(options));
+    const auto server = network::Server::open(*std::move(options));
     if (!server) {
         return fail(server.error());
     }
-    if (!folder.empty()) {
-        log::info("runs are stored in {}", folder);
+    const auto* const live = std::get_if<network::LiveWorlds>(&(*server)->options().worlds);
+    if (live != nullptr && live->storage) {
+        log::info("runs are stored in {}", live->storage->folder);
     }
     log::info("vector instructions: {}", base::name_of(base::instructions()));
+    const bool encrypted = (*server)->options().listeners.tls.has_value();
     const auto endpoint = (*server)->endpoint();
     const auto http = (*server)->http_endpoint();
     if (!encrypted) {
@@ -101,9 +115,8 @@ int run_server(network::ServerOptions options) {
     if (http) {
         log_http_address(*http, (*server)->page(), encrypted);
     }
-    const auto seed = (*server)->first_seed();
     log::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
-              seed ? ", world \"" + first_world + "\", seed " + std::to_string(seed->value) : replay);
+              content_of(**server));
     const bool all_written = (*server)->run();
     log::info("stopped");
     return all_written ? 0 : exit_not_written;
@@ -127,14 +140,14 @@ void add_server(Command& app) {
         begin_log(options);
         return share_worlds("server", options.sharing, true, [&options](const SharedWork& shared) {
             log_processes(shared);
-            auto server = server_options(options);
-            if (!server) {
-                return fail(server.error());
+            const bool is_alone = shared.processes.size() == 1;
+            auto server = server_options(
+                options,
+                is_alone ? std::nullopt : std::optional{network::SharingProcesses{shared.processes, shared.leader}});
+            if (server) {
+                server->threads = shared.threads;
             }
-            server->threads = shared.threads;
-            server->processes = &shared.processes;
-            server->leader = shared.processes.size() > 1 ? &shared.leader : nullptr;
-            return run_server(*std::move(server));
+            return run_server(std::move(server));
         });
     });
 }
@@ -143,7 +156,7 @@ void add_replay_command(Command& app) {
     auto& command = app.add_command("replay", "Serve a stored run as a replay, which clients can view but not change")
                         .group("Run files");
     auto& options = command.keep(ServeOptions{});
-    auto& run = command.keep(network::ServerOptions::Replay{});
+    auto& run = command.keep(network::ReplayedRun{});
     command.add_option("run", &run.path, "Run file, NAME.evod; the run may still be in progress").required();
     command
         .add_option("--generation", &run.generation,

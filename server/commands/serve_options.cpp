@@ -5,7 +5,7 @@
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
 #include "server/log/log.h"
-#include "server/network/random_ids.h"
+#include "server/runtime/random_ids.h"
 
 #include <boost/asio/ip/address_v6.hpp>
 
@@ -23,7 +23,7 @@ using command_line::WholeNumber;
 
 constexpr WholeNumber port_number{0, 65535};
 
-void add_tls_options(Command& command, access::TlsFiles& tls) {
+void add_tls_options(Command& command, ServeOptions::Tls& tls) {
     command.add_option(
         "--tls-cert", &tls.certificate,
         "PEM file with the server's certificate, such as one from evod certificate; the server then accepts "
@@ -73,27 +73,49 @@ void add_http_options(Command& command, ServeOptions& options) {
         .check(host_name_problem);
 }
 
-/// The part of the configuration that `evod` and `evod replay` share.
-network::ServerOptions common_server_options(const ServeOptions& options) {
-    network::ServerOptions server;
-    server.bind_address = options.bind_address;
-    server.port = options.port;
-    server.threads = options.sharing.threads.value_or(default_thread_count());
-    server.token_folder = data_folder_or_default(options.data_folder);
-    server.session_bounds = options.session_bounds;
-    server.token_needed = options.token_needed;
-    server.tls = options.tls;
-    if (options.web || options.http_port) {
-        server.http = {.bind_address = options.http_bind_address,
-                       .port = options.http_port.value_or(page_port),
-                       .host_names = options.http_host_names};
+base::Result<std::optional<access::TlsFiles>> tls_files(const ServeOptions::Tls& tls) {
+    const char* const missing = tls.certificate.empty() && !tls.key.empty()   ? "--tls-key requires --tls-cert"
+                                : tls.key.empty() && !tls.certificate.empty() ? "--tls-cert requires --tls-key"
+                                : tls.certificate.empty() && !tls.client_ca.empty()
+                                    ? "--tls-client-ca requires --tls-cert and --tls-key"
+                                    : nullptr;
+    if (missing != nullptr) {
+        return refusal(base::RefusalCode::FailedPrecondition, missing);
     }
-    return server;
+    if (tls.certificate.empty()) {
+        return std::nullopt;
+    }
+    return access::TlsFiles{.certificate = tls.certificate,
+                            .key = tls.key,
+                            .client_ca = tls.client_ca.empty() ? std::nullopt : std::optional{tls.client_ca}};
+}
+
+/// The configuration of the server for these worlds, or for the replay of this run.
+base::Result<network::ServerOptions> serving(std::variant<network::LiveWorlds, network::ReplayedRun> worlds,
+                                             const ServeOptions& options) {
+    auto tls = tls_files(options.tls);
+    if (!tls) {
+        return tls.error();
+    }
+    network::ListenerOptions listeners{.bind_address = options.bind_address,
+                                       .port = options.port,
+                                       .http = {},
+                                       .tls = *std::move(tls),
+                                       .token_folder = data_folder_or_default(options.data_folder),
+                                       .token_needed = options.token_needed};
+    if (options.web || options.http_port) {
+        listeners.http = {.bind_address = options.http_bind_address,
+                          .port = options.http_port.value_or(page_port),
+                          .host_names = options.http_host_names};
+    }
+    return network::ServerOptions{.worlds = std::move(worlds),
+                                  .listeners = std::move(listeners),
+                                  .session_bounds = options.session_bounds,
+                                  .threads = options.sharing.threads.value_or(default_thread_count())};
 }
 
 base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
-    simulation::CreateWorld create{
-        .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
+    simulation::CreateWorld create{.name = "default", .parameters = {}, .seed = runtime::draw_seed(), .run_id = {}};
     if (!options.experiment_file.empty()) {
         const auto experiment = experiments::load_experiment(options.experiment_file);
         if (!experiment) {
@@ -221,39 +243,41 @@ std::optional<simulation::Speed> parse_speed(const std::string& text) {
     return simulation::Speed{factor};
 }
 
-base::Result<network::ServerOptions> server_options(const ServeOptions& options) {
+base::Result<network::ServerOptions> server_options(const ServeOptions& options,
+                                                    std::optional<network::SharingProcesses> processes) {
+    using Requested = network::FirstWorldOptions::Requested;
     auto world = first_world(options);
     if (!world) {
         return world.error();
     }
-    network::ServerOptions server = common_server_options(options);
+    const bool is_described = !options.experiment_file.empty() || !options.population_file.empty();
+    network::LiveWorlds worlds{
+        .first_world = {.world = *std::move(world),
+                        .requested = options.seed   ? Requested::WorldAndSeed
+                                     : is_described ? Requested::World
+                                                    : Requested::Nothing},
+        .first_commands = {.speed = options.speed.empty() ? std::nullopt : parse_speed(options.speed),
+                           .run = options.start},
+        .storage = {},
+        .processes = processes};
     if (!options.keep_nothing) {
-        server.data_folder = data_folder_or_default(options.data_folder);
-        if (server.data_folder.empty()) {
+        auto folder = data_folder_or_default(options.data_folder);
+        if (!folder) {
             return refusal(base::RefusalCode::InvalidArgument,
                            std::string{no_data_folder} + ", or give --keep-nothing");
         }
+        worlds.storage = {.folder = *std::move(folder),
+                          .run_files = {.durability = options.durability == "relaxed" ? run_file::Durability::Relaxed
+                                                                                      : run_file::Durability::Full,
+                                        .vfs = nullptr,
+                                        .file_bytes_max = options.file_bytes_max,
+                                        .keep_every = options.keep_every}};
     }
-    server.run_files = {.durability = options.durability == "relaxed" ? run_file::Durability::Relaxed
-                                                                      : run_file::Durability::Full,
-                        .vfs = nullptr,
-                        .file_bytes_max = options.file_bytes_max,
-                        .keep_every = options.keep_every};
-    server.first_world = *std::move(world);
-    server.first_world_asked =
-        !options.experiment_file.empty() || options.seed.has_value() || !options.population_file.empty();
-    server.first_seed_asked = options.seed.has_value();
-    server.first_run = options.start;
-    if (!options.speed.empty()) {
-        server.first_speed = *parse_speed(options.speed);
-    }
-    return server;
+    return serving(std::move(worlds), options);
 }
 
-network::ServerOptions replay_server_options(const ServeOptions& options, network::ServerOptions::Replay run) {
-    network::ServerOptions server = common_server_options(options);
-    server.replay = std::move(run);
-    return server;
+base::Result<network::ServerOptions> replay_server_options(const ServeOptions& options, network::ReplayedRun run) {
+    return serving(std::move(run), options);
 }
 
 } // namespace evod::commands

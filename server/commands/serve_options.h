@@ -5,7 +5,7 @@
 
 #include "server/commands/common_options.h"
 #include "server/commands/shared_worlds.h"
-#include "server/network/server.h"
+#include "server/network/server_options.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -38,7 +38,9 @@ struct ServeOptions {
     bool keep_nothing = false;
     bool token_needed = false;
     network::SessionBounds session_bounds;
-    access::TlsFiles tls;
+    struct Tls { // files; empty: the option was not given
+        std::string certificate, key, client_ca;
+    } tls;
     std::string durability = "full";
     std::int64_t file_bytes_max = run_file::RunFile::Options{}.file_bytes_max;
     std::uint64_t keep_every = run_file::RunFile::Options{}.keep_every;
@@ -54,9 +56,12 @@ void add_storage_options(command_line::Command& command, ServeOptions& options);
 std::optional<simulation::Speed> parse_speed(const std::string& text);
 
 /// Returns the configuration of the server for `evod`. Reads the experiment and the population that the options name.
-/// Draws the run id and, if neither the options nor the experiment contain one, the seed at random.
-base::Result<network::ServerOptions> server_options(const ServeOptions& options);
+/// If neither the options nor the experiment contain a seed, draws one at random.
+///
+/// processes  the processes that share the worlds; nullopt: only this one.
+base::Result<network::ServerOptions> server_options(const ServeOptions& options,
+                                                    std::optional<network::SharingProcesses> processes = {});
 /// Returns the configuration of the server for `evod replay`.
-network::ServerOptions replay_server_options(const ServeOptions& options, network::ServerOptions::Replay run);
+base::Result<network::ServerOptions> replay_server_options(const ServeOptions& options, network::ReplayedRun run);
 
 } // namespace evod::commands

@@ -10,8 +10,8 @@
 #include "server/experiments/sweep_folder.h"
 #include "server/experiments/sweep_runner.h"
 #include "server/experiments/trials.h"
-#include "server/network/random_ids.h"
 #include "server/runtime/processes.h"
+#include "server/runtime/random_ids.h"
 
 #include <algorithm>
 #include <chrono>
@@ -199,7 +199,7 @@ Result<std::size_t> execute_runs(const std::vector<std::size_t>& runs, const Swe
                                      .rank = processes.rank(),
                                      .processes = processes.size(),
                                      .run_files = options.run_files,
-                                     .draw_run_id = network::draw_run_id,
+                                     .draw_run_id = runtime::draw_run_id,
                                      .stopped = interrupted,
                                      .on_generation = [&](double work) { progress->generation_done(work); },
                                      .on_run = [&](double work) { progress->run_done(work); }}};

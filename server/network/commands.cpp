@@ -2,11 +2,11 @@
 
 #include "server/base/assert.h"
 #include "server/log/log.h"
-#include "server/network/random_ids.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
+#include "server/runtime/random_ids.h"
 #include "server/simulation/world_name.h"
 
 #include <google/protobuf/io/coded_stream.h>
@@ -65,7 +65,7 @@ Commands::Commands(asio::io_context& context, runtime::Simulations& simulations,
                     .bytes_max = retry_bytes_max,
                     .evicted_max = evicted_keys_max},
                    [this] { limit_counters_.met(Limit::ClientKeys); }}
-    , own_key_{"evod " + to_text(draw_run_id())} {}
+    , own_key_{"evod " + to_text(runtime::draw_run_id())} {}
 
 void Commands::restore(const std::vector<run_file::JournalEntry>& answers) {
     for (const run_file::JournalEntry& entry : answers) {
@@ -86,7 +86,7 @@ void Commands::handle(Session& session, const v1::Request& request) {
              .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}},
              .reason = base::Reason::FieldUnknown}));
     }
-    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     if (!command) {
         count_exceeded_limits(request, limit_counters_);
         return session.answer(refused(command.error()));
@@ -125,7 +125,7 @@ void Commands::handle(Session& session, const v1::Request& request) {
 void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> lease) {
     request.set_client_key(own_key_);
     request.set_request_id(++own_request_id_);
-    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     EVOD_ASSERT(command.has_value());
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;
@@ -149,12 +149,12 @@ bool Commands::send(simulation::Command command, const v1::Request& request, std
         command);
     runtime::Mailbox& mailbox = simulations_.mailbox_of(world);
     return mailbox.try_push(runtime::CommandMail{.command = std::move(command),
-                                                  .origin = {.client = std::move(by),
-                                                             .client_key = request.client_key(),
-                                                             .request_id = request.request_id(),
-                                                             .request = std::move(bytes)},
-                                                  .request_name = protocol::name_of(request),
-                                                  .session = session});
+                                                 .origin = {.client = std::move(by),
+                                                            .client_key = request.client_key(),
+                                                            .request_id = request.request_id(),
+                                                            .request = std::move(bytes)},
+                                                 .request_name = protocol::name_of(request),
+                                                 .session = session});
 }
 
 void Commands::on_done(runtime::CommandDone done) {

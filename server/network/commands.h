@@ -22,7 +22,8 @@ base::Refusal mailbox_full(LimitCounters& limit_counters);
 class Commands {
   public:
     /// All arguments must outlive this object.
-    Commands(asio::io_context& context, runtime::Simulations& simulations, Streams& streams, LimitCounters& limit_counters);
+    Commands(asio::io_context& context, runtime::Simulations& simulations, Streams& streams,
+             LimitCounters& limit_counters);
 
     /// Handles a command that the session has admitted.
     void handle(Session& session, const v1::Request& request);

@@ -1,14 +1,13 @@
 #include "server/network/server.h"
 
+#include "server/base/overloaded.h"
 #include "server/log/log.h"
 #include "server/network/detached.h"
 #include "server/network/limits.h"
-#include "server/network/random_ids.h"
 #include "server/protocol/commands.h"
-#include "server/protocol/parameters.h"
-#include "server/protocol/populations.h"
 #include "server/protocol/public_text.h"
 #include "server/protocol/worlds.h"
+#include "server/runtime/random_ids.h"
 #include "server/runtime/worker_pool.h"
 
 #include <boost/asio/co_spawn.hpp>
@@ -21,23 +20,9 @@
 #include <filesystem>
 #include <functional>
 #include <utility>
+#include <variant>
 
 namespace evod::network {
-
-namespace {
-
-/// Lists the parameters that differ: "population_size (50, not 60), selection (roulette, not tournament)".
-std::string differences_of(const parameters::Parameters& there, const parameters::Parameters& wanted) {
-    std::string text;
-    for (const parameters::ParameterDescription* parameter : parameters::parameters_that_differ(there, wanted)) {
-        text += (text.empty() ? "" : ", ") + std::string{parameter->name} + " (" +
-                parameters::to_text(parameter->get(there)) + ", not " + parameters::to_text(parameter->get(wanted)) +
-                ")";
-    }
-    return text;
-}
-
-} // namespace
 
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
@@ -46,80 +31,66 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
         server->signals_.add(signal);
     }
     // Check the command line before files are opened and worlds are restored.
-    if (auto sound = Listener::check(server->options_.bind_address, "--bind"); !sound) {
+    const ListenerOptions& listeners = server->options_.listeners;
+    if (auto sound = Listener::check(listeners.bind_address, "--bind"); !sound) {
         return sound.error();
     }
-    if (server->options_.http) {
-        if (auto sound = Listener::check(server->options_.http->bind_address, "--http-bind"); !sound) {
+    if (listeners.http) {
+        if (auto sound = Listener::check(listeners.http->bind_address, "--http-bind"); !sound) {
             return sound.error();
         }
     }
-    auto tls = access::server_context(server->options_.tls);
-    if (!tls) {
-        return tls.error();
-    }
-    server->tls_ = *std::move(tls);
-    server->host_.tls = server->tls_.get();
-    protocol::hide_folder(server->options_.data_folder);
-    protocol::hide_folder(server->options_.token_folder);
-    if (server->options_.replay) {
-        protocol::hide_folder(std::filesystem::path{server->options_.replay->path}.parent_path().string());
-        auto replay = runtime::FileReplay::open(server->options_.replay->path, server->options_.replay->generation,
-                                                *server->executor_);
-        if (!replay) {
-            base::Refusal refused = replay.error();
-            for (base::Violation& violation : refused.violations) {
-                if (violation.field == "generation") {
-                    violation.field = "--generation";
-                }
-            }
-            return refused;
+    if (listeners.tls) {
+        auto tls = access::server_context(*listeners.tls);
+        if (!tls) {
+            return tls.error();
         }
-        server->replay_ = *std::move(replay);
-    } else if (auto opened = server->open_archive(); !opened) {
-        return opened.error();
-    } else if (auto begun = server->world_to_begin(); !begun) {
-        return begun.error();
+        server->tls_ = *std::move(tls);
+        server->host_.tls = server->tls_.get();
     }
-    auto gate = access::Gate::open(server->options_.token_folder, server->needs_token());
+    if (listeners.token_folder) {
+        protocol::hide_folder(*listeners.token_folder);
+    }
+    const base::Overloaded open_content{[&](const LiveWorlds& worlds) { return server->open_worlds(worlds); },
+                                        [&](const ReplayedRun& run) { return server->open_replay(run); }};
+    auto opened = std::visit(open_content, server->options_.worlds);
+    if (!opened) {
+        return opened.error();
+    }
+    auto gate = access::Gate::open(listeners.token_folder, needs_token(listeners));
     if (!gate) {
         return gate.error();
     }
     server->gate_ = *std::move(gate);
-    auto listener = Listener::open(server->context_, server->options_.bind_address, server->options_.port);
+    auto listener = Listener::open(server->context_, listeners.bind_address, listeners.port);
     if (!listener) {
         return listener.error();
     }
     server->listener_ = *std::move(listener);
-    if (auto opened = server->open_http(); !opened) {
+    if (opened = server->open_http(); !opened) {
         return opened.error();
     }
     std::signal(SIGPIPE, SIG_IGN); // writing the log to a closed pipe must not end the server
     return server;
 }
 
-bool Server::needs_token() const {
-    const auto is_reachable = [](const std::string& text) {
-        boost::system::error_code no_address; // Listener::check() has already reported it
-        const auto address = asio::ip::make_address(text, no_address);
-        return !no_address && !address.is_loopback();
-    };
-    // A proxy on this machine has a loopback address, whatever the address of its clients. --http-host announces one.
-    return options_.token_needed || is_reachable(options_.bind_address) ||
-           (options_.http && (is_reachable(options_.http->bind_address) || !options_.http->host_names.empty()));
-}
-
 Server::Server(ServerOptions options)
     : options_{std::move(options)}
     , send_memory_{client_buffer_bytes_max, [this] { asio::post(context_, [this] { evict_sessions(); }); }}
     , executor_{runtime::make_executor(options_.threads)}
-    , simulations_{options_.replay.has_value()}
+    , simulations_{std::holds_alternative<ReplayedRun>(options_.worlds)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, simulations_}
-    , dispatcher_{
-          context_, simulations_, outbox_, sessions_, streams_, host_, [this] { stop(); }, [this] { return metrics(); }} {
+    , dispatcher_{context_,
+                  simulations_,
+                  outbox_,
+                  sessions_,
+                  streams_,
+                  host_,
+                  [this] { stop(); },
+                  [this] { return metrics(); }} {
     host_.limits = limits_message(options_.session_bounds);
-    host_.instance_id = to_text(draw_run_id());
+    host_.instance_id = to_text(runtime::draw_run_id());
     host_.clock = &clock_;
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
     host_.admit = [this](const std::string& token, const std::string& address) {
@@ -140,141 +111,40 @@ Server::~Server() {
     }
 }
 
-base::Result<void> Server::open_archive() {
-    const std::string& path = options_.data_folder;
-    if (path.empty()) {
-        return {};
+base::Result<void> Server::open_worlds(const LiveWorlds& worlds) {
+    if (worlds.storage) {
+        protocol::hide_folder(worlds.storage->folder);
+        auto archive = replay::Archive::open(worlds.storage->folder, worlds.storage->run_files, *executor_);
+        if (!archive) {
+            return archive.error();
+        }
+        archive_ = *std::move(archive);
+        host_.storage = protocol::to_proto(simulation::Storage{});
+        host_.durability =
+            archive_->durability() == run_file::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
     }
-    auto archive = replay::Archive::open(path, options_.run_files, *executor_);
-    if (!archive) {
-        return archive.error();
+    auto first_world = FirstWorld::choose(worlds, archive_.get());
+    if (!first_world) {
+        return first_world.error();
     }
-    archive_ = *std::move(archive);
-    host_.storage = protocol::to_proto(simulation::Storage{});
-    host_.durability =
-        options_.run_files.durability == run_file::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
-    if (!options_.first_world_asked) {
-        return {};
-    }
-    const simulation::CreateWorld& wanted = options_.first_world;
-    const run_file::RunIdentity* there = archive_->identity_of(wanted.name);
-    const auto differs = [&](const std::string& in_what) {
-        return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
-                             .message = path + " contains a world \"" + wanted.name + "\" with other " + in_what +
-                                        ": use another --data folder, or start without --experiment, --seed "
-                                        "and --population, and reset or delete that world",
-                             .violations = {}};
-    };
-    if (archive_->is_damaged(wanted.name)) {
-        log::error({.world = wanted.name},
-                   "--experiment, --seed and --population have no effect: world \"{}\" exists and is damaged",
-                   wanted.name);
-        return {};
-    }
-    if (there && !(there->requested_parameters().values == wanted.parameters)) {
-        return differs("parameters: " + differences_of(there->requested_parameters().values, wanted.parameters));
-    }
-    if (there && there->schedule != wanted.schedule) {
-        return differs("schedule of parameters");
-    }
-    if (there && options_.first_seed_asked && there->seed.value != wanted.seed.value) {
-        return differs("seed (" + std::to_string(there->seed.value) + ", not " + std::to_string(wanted.seed.value) +
-                       ")");
-    }
-    if (there && wanted.first_population && !simulation::same(there->first_population, wanted.first_population)) {
-        return differs("organisms");
-    }
+    first_world_ = *std::move(first_world);
     return {};
 }
 
-bool Server::creates_first_world() const {
-    if (options_.replay) {
-        return false;
-    }
-    if (!archive_) {
-        return true;
-    }
-    const std::vector<std::string> names = archive_->world_names();
-    return options_.first_world_asked ? std::ranges::find(names, options_.first_world.name) == names.end()
-                                      : names.empty();
-}
-
-base::Result<std::string> Server::world_to_begin() const {
-    const std::string& first = options_.first_world.name;
-    if (creates_first_world() || options_.first_world_asked || !(options_.first_speed || options_.first_run)) {
-        return first;
-    }
-    const std::vector<std::string> names = archive_->world_names();
-    if (names.size() == 1) {
-        return names.front();
-    }
-    std::string all;
-    for (const std::string& name : names) {
-        if (name == first) {
-            return first;
+base::Result<void> Server::open_replay(const ReplayedRun& run) {
+    protocol::hide_folder(std::filesystem::path{run.path}.parent_path().string());
+    auto replay = runtime::FileReplay::open(run.path, run.generation, *executor_);
+    if (!replay) {
+        base::Refusal refused = replay.error();
+        for (base::Violation& violation : refused.violations) {
+            if (violation.field == "generation") {
+                violation.field = "--generation";
+            }
         }
-        all += (all.empty() ? "" : ", ") + name;
+        return refused;
     }
-    return refusal(base::RefusalCode::FailedPrecondition,
-                   "--speed and --start apply to one world, but " + options_.data_folder + " contains the worlds " +
-                       all + ": start without them, then use evoctl --world NAME speed and run");
-}
-
-std::optional<base::Seed> Server::first_seed() const {
-    if (creates_first_world()) {
-        return options_.first_world.seed;
-    }
-    if (!archive_) {
-        return std::nullopt;
-    }
-    const run_file::RunIdentity* there = archive_->identity_of(options_.first_world.name);
-    return there ? std::optional{there->seed} : std::nullopt;
-}
-
-void Server::begin_first_world() {
-    const simulation::CreateWorld& world = options_.first_world;
-    if (creates_first_world()) {
-        v1::Request request;
-        v1::CreateWorld& create = *request.mutable_create_world();
-        create.set_name(world.name);
-        create.set_seed(world.seed.value);
-        for (const parameters::ParameterDescription* parameter :
-             parameters::parameters_that_differ(world.parameters, {})) {
-            v1::ParameterAssignment& assignment = *create.add_parameters();
-            assignment.set_name(std::string{parameter->name});
-            *assignment.mutable_value() = protocol::to_proto(parameter->get(world.parameters));
-        }
-        *create.mutable_schedule() = protocol::to_proto(world.schedule, 1);
-        protocol::add_population(create, world.first_population);
-        dispatcher_.handle_own(std::move(request));
-    }
-    const std::string begun = *world_to_begin(); // open() has already checked that there is such a world
-    const std::size_t others = archive_ && !creates_first_world() ? archive_->world_names().size() - 1 : 0;
-    if (archive_ && archive_->is_damaged(begun)) {
-        if (options_.first_speed || options_.first_run) {
-            log::warn({.world = begun}, "--speed and --start have no effect: world \"{}\" is damaged", begun);
-        }
-        return;
-    }
-    if ((options_.first_speed || options_.first_run) && others > 0) {
-        log::info({.world = begun}, "--speed and --start apply to world \"{}\" only; {} others continue as before",
-                  begun, others);
-    }
-    if (options_.first_speed) {
-        v1::Request request;
-        request.mutable_set_speed()->set_world(begun);
-        if (*options_.first_speed) {
-            request.mutable_set_speed()->mutable_speed()->set_real_time_factor(**options_.first_speed);
-        } else {
-            request.mutable_set_speed()->mutable_speed()->set_max(true);
-        }
-        dispatcher_.handle_own(std::move(request));
-    }
-    if (options_.first_run) {
-        v1::Request request;
-        request.mutable_run()->set_world(begun);
-        dispatcher_.handle_own(std::move(request));
-    }
+    replay_ = *std::move(replay);
+    return {};
 }
 
 bool Server::run() {
@@ -290,10 +160,12 @@ bool Server::run() {
             }
         }
     }
-    if (options_.leader != nullptr) {
-        worlds.share(*options_.leader, *executor_);
+    if (const auto* live = std::get_if<LiveWorlds>(&options_.worlds); live != nullptr && live->processes) {
+        worlds.share(live->processes->leader, *executor_);
     }
-    begin_first_world();
+    if (first_world_) {
+        first_world_->begin([this](v1::Request request) { dispatcher_.commands().handle_own(std::move(request)); });
+    }
     simulations_.start({
         .executor = *executor_,
         .clock = clock_,
@@ -351,19 +223,21 @@ void Server::wait_for_signal() {
 }
 
 void Server::reread_certificate() {
-    auto tls = access::server_context(options_.tls);
+    if (!options_.listeners.tls) {
+        log::info("SIGHUP: no certificate to reload; a changed token file is reloaded without a signal");
+        return;
+    }
+    auto tls = access::server_context(*options_.listeners.tls);
     if (!tls) {
         log::error("SIGHUP: keeping the old certificate: {}", to_text(tls.error()));
-    } else if (!*tls) {
-        log::info("SIGHUP: no certificate to reload; a changed token file is reloaded without a signal");
-    } else {
-        tls_ = *std::move(tls); // existing connections keep the old certificate
-        host_.tls = tls_.get();
-        if (http_) {
-            http_->set_tls(tls_.get());
-        }
-        log::info("SIGHUP: certificate reloaded for new connections");
+        return;
     }
+    tls_ = *std::move(tls); // existing connections keep the old certificate
+    host_.tls = tls_.get();
+    if (http_) {
+        http_->set_tls(tls_.get());
+    }
+    log::info("SIGHUP: certificate reloaded for new connections");
 }
 
 void Server::stop() {

@@ -3,10 +3,11 @@
 // Threads      run() is the network thread. Sessions, streams and the reply cache are used only on that thread.
 #pragma once
 
-#include "server/access/tls.h"
 #include "server/network/dispatcher.h"
+#include "server/network/first_world.h"
 #include "server/network/http.h"
 #include "server/network/listener.h"
+#include "server/network/server_options.h"
 #include "server/replay/archive.h"
 #include "server/runtime/processes.h"
 #include "server/runtime/simulations.h"
@@ -23,44 +24,6 @@
 
 namespace evod::network {
 
-struct ServerOptions {
-    std::string bind_address = "127.0.0.1";
-    std::uint16_t port = codec::default_port; // 0: any free port
-    std::size_t threads = 1;                  // number of threads in the worker pool
-    std::string data_folder;                  // folder of the run files; empty: runs are not stored
-    std::string token_folder;                 // folder of the token file; empty: there are no tokens
-    SessionBounds session_bounds;
-    bool token_needed = false; // require a token on the loopback interface, too; other interfaces always require one
-    access::TlsFiles tls;
-    run_file::RunFile::Options run_files;
-    struct Replay {
-        std::string path;
-        std::optional<std::uint64_t> generation; // generation to show first; nullopt: the first
-    };
-    struct HttpOptions {
-        std::string bind_address = "127.0.0.1";
-        std::uint16_t port = 0; // 0: any free port
-        // Names by which browsers may address the server, besides its own: of a proxy, of a DNS entry. If there is one,
-        // every client needs a token: behind a proxy on the same machine all clients have a loopback address.
-        std::vector<std::string> host_names = {};
-    };
-    std::optional<HttpOptions> http; // nullopt: neither the browser viewer nor the metrics are served over HTTP
-    std::optional<Replay> replay;    // a run file to serve as a replay, without live worlds and data folder
-
-    // The processes that share the worlds, and their leader; nullptr: there are none.
-    const runtime::Processes* processes = nullptr;
-    simulation::Leader* leader = nullptr;
-
-    simulation::CreateWorld first_world; // created if no world has this name
-    bool first_world_asked = false;      // false: first_world is created only if there is no world at all
-    bool first_seed_asked = false;       // true: if the world is already stored, it must have the seed of first_world
-    // The speed that the server sets before any other command. It applies to first_world if the user requested that
-    // world; otherwise to the only world, or to `default` if there are several worlds. If there are several worlds and
-    // none is named `default`, the server does not start.
-    std::optional<simulation::Speed> first_speed;
-    bool first_run = false; // run the same world without a goal
-};
-
 class Server {
   public:
     /// Restores the worlds of the data folder and opens the port. The message of a refusal is written for the user who
@@ -68,8 +31,10 @@ class Server {
     static base::Result<std::unique_ptr<Server>> open(ServerOptions options);
     ~Server();
 
+    const ServerOptions& options() const { return options_; }
+
     /// The seed of the first world; nullopt if that world does not exist.
-    std::optional<base::Seed> first_seed() const;
+    std::optional<base::Seed> first_seed() const { return first_world_ ? first_world_->seed() : std::nullopt; }
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_->endpoint(); }
 
@@ -92,15 +57,9 @@ class Server {
 
   private:
     explicit Server(ServerOptions options);
-    base::Result<void> open_archive();
+    base::Result<void> open_worlds(const LiveWorlds& worlds);
+    base::Result<void> open_replay(const ReplayedRun& run);
     base::Result<void> open_http();
-    /// Whether a client without a token is refused, on all interfaces.
-    bool needs_token() const;
-    /// Whether run() must create first_world.
-    bool creates_first_world() const;
-    /// Returns the name of the world to which first_speed and first_run apply.
-    base::Result<std::string> world_to_begin() const;
-    void begin_first_world();
     /// Starts the periodic checks: revoked tokens, stalled clients, free memory.
     void start_housekeeping();
     void schedule_housekeeping();
@@ -134,6 +93,7 @@ class Server {
 
     std::unique_ptr<base::Executor> executor_;
     std::unique_ptr<replay::Archive> archive_;  // nullptr: runs are not stored
+    std::optional<FirstWorld> first_world_;     // empty: the server shows a replay
     std::optional<runtime::FileReplay> replay_; // empty after it was moved to the simulation thread
     runtime::SteadyClock clock_;
     runtime::Simulations simulations_;

@@ -155,7 +155,9 @@ v1::Metrics Server::metrics() {
     add_gauge(all, "evod_build_info", "Always 1; the labels are the version and the vector instructions in use")
         .add(1, {{"version", EVOD_VERSION}, {"instructions", std::string{base::name_of(base::instructions())}}});
     add_worlds(all, worlds_counted_);
-    const runtime::Processes* const processes = options_.processes;
+    const auto* const live = std::get_if<LiveWorlds>(&options_.worlds);
+    const runtime::Processes* const processes =
+        live != nullptr && live->processes ? &live->processes->all.get() : nullptr;
     add_gauge(all, "evod_processes", "Processes of mpirun that share worlds, with this one")
         .add(processes != nullptr ? processes->size() : 1);
     add_counter(all, "evod_exchange_seconds_total",
@@ -226,14 +228,15 @@ asio::awaitable<HttpAnswer> Server::health() {
 }
 
 base::Result<void> Server::open_http() {
-    if (!options_.http) {
+    const std::optional<HttpOptions>& options = options_.listeners.http;
+    if (!options) {
         return {};
     }
     boost::system::error_code no_address; // open() has already reported it
     std::array<char, HOST_NAME_MAX + 1> machine{};
     ::gethostname(machine.data(), machine.size() - 1); // without a name it stays empty
-    auto host_names = HostNames::make(asio::ip::make_address(options_.http->bind_address, no_address), machine.data(),
-                                      options_.http->host_names);
+    auto host_names =
+        HostNames::make(asio::ip::make_address(options->bind_address, no_address), machine.data(), options->host_names);
     if (!host_names) {
         return host_names.error();
     }
@@ -245,7 +248,7 @@ base::Result<void> Server::open_http() {
                                      co_return HttpAnswer{.text = metrics::to_prometheus(metrics()),
                                                           .type = metrics::prometheus_content_type};
                                  },
-                                 .needs_token = needs_token()};
+                                 .needs_token = needs_token(options_.listeners)};
     service.pages["/healthz"] = {.make = [this] { return health(); }};
     for (const WebAsset& asset : web_assets()) {
         service.files.push_back({.compressed = asset});
@@ -256,13 +259,13 @@ base::Result<void> Server::open_http() {
         host_.traffic.websockets.add();
         accepted(std::move(transport));
     };
-    auto http = Http::open(context_, options_.http->bind_address, options_.http->port, std::move(service));
+    auto http = Http::open(context_, options->bind_address, options->port, std::move(service));
     if (!http) {
         return http.error();
     }
     http_ = *std::move(http);
     if (!web_assets().empty()) {
-        host_.page = page_address(http_->endpoint(), options_.http->host_names, !options_.tls.certificate.empty());
+        host_.page = page_address(http_->endpoint(), options->host_names, options_.listeners.tls.has_value());
     }
     return {};
 }

@@ -1,8 +1,8 @@
 // Island: one walled rectangle with its organisms, food and poison, and everything that happens there in a tick.
 //
-// One tick, in this order: due items reappear → every living organism loses health → perception and choice (rules, or a
-// network, which also turns the organism), from the positions at the start of the tick → forces, damping, collisions,
-// positions (physics/step.h) → feeding at the new positions → deaths → hash.
+// docs/MODEL.md, "What happens in a tick", states what happens and in which order. The definition of advance_tick() states
+// how this work is divided into two loops over blocks of organisms. At the end of a tick, the hash of the island is
+// computed.
 //
 // Organisms are stored strip by strip, in the order of their positions, so that neighbours share cache lines. They are
 // sorted again from time to time as they move. Until the next sorting, a dead organism leaves a void body: an immovable

@@ -280,12 +280,53 @@ TEST(Layering, IncludesFormNoCircle) {
     EXPECT_EQ(circle_in(arrows), "");
 }
 
+/// The sources below server/ that a source includes, also through others, each with the one that includes it.
+std::map<std::string, std::string> reached_from(const Source& source) {
+    static const std::map<std::string, const Source*> by_path = [] {
+        std::map<std::string, const Source*> all;
+        for (const Source& one : sources()) {
+            all[one.path] = &one;
+        }
+        return all;
+    }();
+    std::map<std::string, std::string> reached{{source.path, ""}};
+    std::vector<const Source*> waiting{&source};
+    while (!waiting.empty()) {
+        const Source* const next = waiting.back();
+        waiting.pop_back();
+        for (const std::string& include : next->ours) {
+            const auto found = by_path.find(include);
+            if (found != by_path.end() && reached.emplace(include, next->path).second) {
+                waiting.push_back(found->second);
+            }
+        }
+    }
+    return reached;
+}
+
+TEST(Layering, OfflineCommandsReachNoNetwork) {
+    // The server, and the command that prints the limits of the network.
+    static const std::regex online{R"(server/commands/(limits|serve|serve_options)\.(h|cpp))"};
+    int offline = 0;
+    for (const Source& source : sources()) {
+        if (source.folder != "server/commands" || std::regex_match(source.path, online)) {
+            continue;
+        }
+        ++offline;
+        for (const auto& [path, includer] : reached_from(source)) {
+            const std::string folder = folder_of(path);
+            EXPECT_FALSE(folder == "server/network" || folder == "server/streaming")
+                << source.path << " reaches " << path << ", which " << includer << " includes";
+        }
+    }
+    EXPECT_GT(offline, 25);
+}
+
 TEST(Layering, ProgramsIncludeNoTests) {
     for (const Source& source : sources()) {
         if (source.path.starts_with("server/") || source.path.starts_with("client/")) {
             for (const std::string& include : source.ours) {
-                EXPECT_FALSE(include.starts_with("tests/"))
-                    << source.path << " includes " << include;
+                EXPECT_FALSE(include.starts_with("tests/")) << source.path << " includes " << include;
             }
         }
     }

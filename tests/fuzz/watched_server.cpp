@@ -1,9 +1,9 @@
 #include "tests/fuzz/watched_server.h"
 
-#include "server/network/random_ids.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/queries.h"
 #include "server/protocol/worlds.h"
+#include "server/runtime/random_ids.h"
 #include "tests/fuzz/valid_snapshot.h"
 
 #include <boost/asio/post.hpp>
@@ -35,11 +35,11 @@ namespace {
 std::uint64_t drawn = 0;
 } // namespace
 
-// Replaces server/network/random_ids.cpp.
-evod::base::Seed evod::network::draw_seed() {
+// Replaces server/runtime/random_ids.cpp.
+evod::base::Seed evod::runtime::draw_seed() {
     return {++drawn};
 }
-evod::simulation::RunId evod::network::draw_run_id() {
+evod::simulation::RunId evod::runtime::draw_run_id() {
     return {0, ++drawn};
 }
 

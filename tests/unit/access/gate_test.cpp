@@ -25,8 +25,8 @@ class GateTest : public testing::Test {
 
 TEST_F(GateTest, ARequiredTokenMustExist) {
     EXPECT_EQ(Gate::open(folder, true).error().code, RefusalCode::FailedPrecondition);
-    EXPECT_EQ(Gate::open("", true).error().code, RefusalCode::FailedPrecondition);
-    auto gate = Gate::open("", false);
+    EXPECT_EQ(Gate::open(std::nullopt, true).error().code, RefusalCode::FailedPrecondition);
+    auto gate = Gate::open(std::nullopt, false);
     ASSERT_TRUE(gate);
     EXPECT_EQ(gate->admit("", "a", now)->role, Role::Admin);
     EXPECT_EQ(gate->admit("evod_x", "a", now).error().code, RefusalCode::Unauthenticated);

@@ -44,7 +44,7 @@ TEST(DataFolder, IsTheStateFolderUnlessGiven) {
 
 TEST(DataFolder, IsRequiredWithoutADefault) {
     const Variable state{"XDG_STATE_HOME", nullptr}, home{"HOME", nullptr};
-    EXPECT_EQ(data_folder_or_default(""), "");
+    EXPECT_EQ(data_folder_or_default(""), std::nullopt);
     std::string folder;
     testing::internal::CaptureStderr();
     EXPECT_FALSE(find_data_folder(folder));

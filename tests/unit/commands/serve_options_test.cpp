@@ -11,6 +11,7 @@ namespace evod::commands {
 namespace {
 
 using testing::HasSubstr;
+using Requested = network::FirstWorldOptions::Requested;
 
 /// The options after a command line; nothing if it was rejected.
 std::optional<ServeOptions> parse(std::vector<const char*> words) {
@@ -60,24 +61,24 @@ TEST(ServeOptions, DescribeTheServer) {
     ASSERT_TRUE(options);
     const auto server = server_options(*options);
     ASSERT_TRUE(server) << to_text(server.error());
-    EXPECT_EQ(server->port, 9);
-    ASSERT_TRUE(server->http);
-    EXPECT_EQ(server->http->port, 8);
-    EXPECT_EQ(server->data_folder, "");
+    EXPECT_EQ(server->listeners.port, 9);
+    ASSERT_TRUE(server->listeners.http);
+    EXPECT_EQ(server->listeners.http->port, 8);
     EXPECT_EQ(server->session_bounds.sessions_max, 7u);
-    EXPECT_EQ(server->first_world.name, "default");
-    EXPECT_EQ(server->first_world.seed, base::Seed{5});
-    EXPECT_TRUE(server->first_world_asked);
-    EXPECT_TRUE(server->first_seed_asked);
-    EXPECT_TRUE(server->first_speed);
-    EXPECT_TRUE(server->first_run);
-    EXPECT_FALSE(server->replay);
+    const auto& worlds = std::get<network::LiveWorlds>(server->worlds);
+    EXPECT_FALSE(worlds.storage);
+    EXPECT_FALSE(worlds.processes);
+    EXPECT_EQ(worlds.first_world.world.name, "default");
+    EXPECT_EQ(worlds.first_world.world.seed, base::Seed{5});
+    EXPECT_EQ(worlds.first_world.requested, Requested::WorldAndSeed);
+    EXPECT_EQ(worlds.first_commands.speed, simulation::Speed{2});
+    EXPECT_TRUE(worlds.first_commands.run);
 }
 
 TEST(ServeOptions, WebIsThePortOfThePage) {
     const auto described = [](std::vector<const char*> words) {
         words.push_back("--keep-nothing");
-        return server_options(parse(words).value())->http;
+        return server_options(parse(words).value())->listeners.http;
     };
     EXPECT_FALSE(described({}));
     EXPECT_EQ(described({"--web"})->port, 7745);
@@ -97,12 +98,34 @@ TEST(ServeOptions, TheFirstWorldIsTheExperiments) {
     options.data_folder = folder.path();
     const auto server = server_options(options);
     ASSERT_TRUE(server) << to_text(server.error());
-    EXPECT_EQ(server->first_world.name, "two_islands");
-    EXPECT_EQ(server->first_world.parameters.island_count, 2u);
-    EXPECT_EQ(server->first_world.seed, base::Seed{6});
-    EXPECT_FALSE(server->first_seed_asked);
-    EXPECT_EQ(server->data_folder, folder.path());
-    EXPECT_EQ(server->token_folder, folder.path());
+    const auto& worlds = std::get<network::LiveWorlds>(server->worlds);
+    EXPECT_EQ(worlds.first_world.world.name, "two_islands");
+    EXPECT_EQ(worlds.first_world.world.parameters.island_count, 2u);
+    EXPECT_EQ(worlds.first_world.world.seed, base::Seed{6});
+    EXPECT_EQ(worlds.first_world.requested, Requested::World);
+    EXPECT_TRUE(worlds.first_commands.is_empty());
+    EXPECT_EQ(worlds.storage.value().folder, folder.path());
+    EXPECT_EQ(server->listeners.token_folder, folder.path());
+}
+
+TEST(ServeOptions, ACertificateNeedsItsKey) {
+    ServeOptions options;
+    options.keep_nothing = true;
+    const auto refusal_of = [&](const ServeOptions::Tls& tls) {
+        options.tls = tls;
+        return to_text(server_options(options).error());
+    };
+    EXPECT_EQ(refusal_of({.certificate = "a", .key = "", .client_ca = ""}), "--tls-cert requires --tls-key");
+    EXPECT_EQ(refusal_of({.certificate = "", .key = "b", .client_ca = "c"}), "--tls-key requires --tls-cert");
+    EXPECT_EQ(refusal_of({.certificate = "", .key = "", .client_ca = "c"}),
+              "--tls-client-ca requires --tls-cert and --tls-key");
+    options.tls = {.certificate = "a", .key = "b", .client_ca = ""};
+    const auto tls = server_options(options)->listeners.tls;
+    ASSERT_TRUE(tls);
+    EXPECT_EQ(tls->key, "b");
+    EXPECT_FALSE(tls->client_ca);
+    options.tls = {};
+    EXPECT_FALSE(server_options(options)->listeners.tls);
 }
 
 TEST(ServeOptions, AFileThatCannotBeReadIsNamed) {
@@ -119,11 +142,11 @@ TEST(ServeOptions, AReplayHasNoWorldsOfItsOwn) {
     ServeOptions options;
     options.data_folder = "/tokens";
     const auto server = replay_server_options(options, {.path = "/run.evod", .generation = 4});
-    ASSERT_TRUE(server.replay);
-    EXPECT_EQ(server.replay->path, "/run.evod");
-    EXPECT_EQ(server.replay->generation, 4u);
-    EXPECT_EQ(server.data_folder, "");
-    EXPECT_EQ(server.token_folder, "/tokens");
+    ASSERT_TRUE(server) << to_text(server.error());
+    const auto& run = std::get<network::ReplayedRun>(server->worlds);
+    EXPECT_EQ(run.path, "/run.evod");
+    EXPECT_EQ(run.generation, 4u);
+    EXPECT_EQ(server->listeners.token_folder, "/tokens");
 }
 
 } // namespace

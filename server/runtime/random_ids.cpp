@@ -1,8 +1,8 @@
-#include "server/network/random_ids.h"
+#include "server/runtime/random_ids.h"
 
 #include <random>
 
-namespace evod::network {
+namespace evod::runtime {
 namespace {
 
 std::uint64_t draw() {
@@ -22,4 +22,4 @@ simulation::RunId draw_run_id() {
     return {high, draw()};
 }
 
-} // namespace evod::network
+} // namespace evod::runtime
