@@ -20,18 +20,19 @@ bool SnapshotTimes::is_due(const simulation::World& world, Clock::time_point now
     return world.moment().tick != shown_tick_ && now + between() / 10 >= next_;
 }
 
-void SnapshotTimes::list_islands(const simulation::World& world, std::vector<std::uint32_t>& islands) const {
-    islands.clear();
+const std::vector<std::uint32_t>& SnapshotTimes::wanted_islands(const simulation::World& world) {
+    islands_.clear();
     if (demand_->all_islands) {
-        islands.resize(world.island_count());
-        std::iota(islands.begin(), islands.end(), 0u);
-        return;
+        islands_.resize(world.island_count());
+        std::iota(islands_.begin(), islands_.end(), 0u);
+        return islands_;
     }
     for (const std::uint32_t island : demand_->islands) {
         if (island < world.island_count()) {
-            islands.push_back(island);
+            islands_.push_back(island);
         }
     }
+    return islands_;
 }
 
 void SnapshotTimes::taken(const simulation::World& world, Clock::time_point now) {

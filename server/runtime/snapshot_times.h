@@ -21,8 +21,8 @@ class SnapshotTimes {
     bool shows_change() const { return changed_; }
 
     bool is_due(const simulation::World& world, Clock::time_point now) const;
-    /// Writes the indices of the islands that viewers want. There must be a demand.
-    void list_islands(const simulation::World& world, std::vector<std::uint32_t>& islands) const;
+    /// Returns the indices of the islands that viewers want. There must be a demand. Valid until the next call.
+    const std::vector<std::uint32_t>& wanted_islands(const simulation::World& world);
     /// Plans the next snapshot, after one was taken.
     void taken(const simulation::World& world, Clock::time_point now);
 
@@ -34,6 +34,7 @@ class SnapshotTimes {
     bool changed_ = true; // since the last snapshot
     std::uint64_t shown_tick_ = 0;
     Clock::time_point next_;
+    std::vector<std::uint32_t> islands_; // reused buffer
 };
 
 } // namespace evod::runtime

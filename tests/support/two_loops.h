@@ -26,8 +26,8 @@ class TwoLoops {
         , replays{replays_.mailbox, replays_.demand, executor, clock, of_replays(with_reply(outputs))} {}
 
     runtime::Simulations simulations{false};
-    /// Sees every reply, on the thread that gives it.
-    std::function<void(const runtime::Reply&)> on_reply = [](const runtime::Reply&) {};
+    /// Sees every reply, on the thread that gives it. Returns whether it has handled the reply.
+    std::function<bool(const runtime::Reply&)> handles = [](const runtime::Reply&) { return false; };
 
     /// Lets both loops pass once, and handles their replies. Returns when the next pass is due if no mail arrives.
     std::optional<runtime::Clock::time_point> pass() {
@@ -60,7 +60,9 @@ class TwoLoops {
   private:
     runtime::LoopOutputs with_reply(runtime::LoopOutputs outputs) {
         outputs.reply = [this](runtime::Reply reply) {
-            on_reply(reply);
+            if (handles(reply)) {
+                return;
+            }
             {
                 const std::lock_guard lock{mutex_};
                 posted_.push_back(std::move(reply));

@@ -39,7 +39,7 @@ TEST_F(LoopsWithDisk, WaitingWorldsAreShownAndReplaysContinue) {
     loops.pass();
     ASSERT_EQ(snapshots.size(), 1) << "a new viewer";
     EXPECT_EQ(snapshots[0]->moment.tick, stands);
-    send(simulation::Run{look, {}});
+    ask_run(look);
     pass_until([&] { return tick(look) > 100; });
     EXPECT_EQ(tick("w"), stands);
 

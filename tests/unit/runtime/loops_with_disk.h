@@ -29,12 +29,14 @@ using namespace std::chrono_literals;
 class LoopsWithDisk : public testing::Test {
   protected:
     LoopsWithDisk() : data{*run_file::DataFolder::open(folder.path())}, thread{{}, 1ms}, recorder{data, thread} {
-        loops.on_reply = [this](const Reply& reply) {
+        loops.handles = [this](const Reply& reply) {
             const auto* receipt = std::get_if<recording::Receipt>(&reply);
-            if (receipt && receipt->ticket == holding_ticket) {
+            const bool holds = receipt && receipt->ticket == holding_ticket;
+            if (holds) {
                 at_work.set_value();
                 go_on.get_future().wait();
             }
+            return holds;
         };
         thread.disk().when_changed([this] { ++news; });
         clock.per_look = 100us; // so that slices end
