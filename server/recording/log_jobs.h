@@ -30,8 +30,7 @@ class LogJobs {
     pthread_t handle() { return jobs_.handle(); }
 
   private:
-    /// job  runs on the job queue. The function that it returns runs on the storage thread, unless the run has ended.
-    void start(const RunLog& run, std::function<std::function<void(RunLog&)>()> job);
+    void start(const RunLog& run, std::function<decltype(JobResult::result)()> job);
 
     RecordQueue& queue_;
     std::size_t running_count_ = 0;

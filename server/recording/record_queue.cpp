@@ -1,24 +1,26 @@
 #include "server/recording/record_queue.h"
 
+#include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace evod::recording {
 
-RunNumber RecordQueue::add_run(RunLog run, std::vector<WaitingRecord> records,
-                               std::optional<std::pair<RunNumber, Closing>> old) {
+RunNumber RecordQueue::add_run(RunLog run, std::optional<ReplacedRun> old) {
     RunNumber number = 0;
+    bool wake = false;
     {
         const std::lock_guard lock{mutex_};
         number = run.number = ++last_number_;
-        handed_over_.new_runs.emplace(number, std::move(run));
+        wake = !run.waiting.empty() && count(run.waiting);
+        handed_over_.runs[number].added = std::move(run);
         if (old) {
-            handed_over_.closing.insert(*std::move(old));
-        }
-        if (!records.empty()) {
-            enqueue(number, std::move(records));
+            set_closing(old->number, std::move(old->closing));
         }
     }
-    changed_.notify_one();
+    if (wake) {
+        changed_.notify_one();
+    }
     return number;
 }
 
@@ -26,37 +28,46 @@ void RecordQueue::add(RunNumber run, std::vector<WaitingRecord> records) {
     bool wake = false;
     {
         const std::lock_guard lock{mutex_};
-        wake = enqueue(run, std::move(records));
+        wake = count(records);
+        std::ranges::move(records, std::back_inserter(handed_over_.runs[run].records));
     }
     if (wake) {
         changed_.notify_one();
     }
 }
 
-bool RecordQueue::enqueue(RunNumber run, std::vector<WaitingRecord> records) {
-    std::size_t bytes = 0;
+bool RecordQueue::count(const std::vector<WaitingRecord>& records) {
+    const std::size_t bytes = bytes_of(records);
+    disk_.added(bytes);
+    urgent_ |= bytes > gathered_bytes_max;
     for (const WaitingRecord& record : records) {
-        bytes += record.bytes;
+        urgent_ |= record.ticket != 0;
+        has_barrier_ |= record.is_barrier();
+        if (record.writing) {
+            record.writing->waits = true;
+            ++unfinished;
+        }
     }
-    urgent_ |= records.back().ticket != 0 || bytes > gathered_bytes_max;
-    has_barrier_ |= records.back().is_barrier();
     // Only an urgent batch and the first batch of a group wake the thread.
-    const bool wake = urgent_ || handed_over_.records.empty();
-    if (handed_over_.records.empty()) {
+    const bool is_first = !handed_over_since_;
+    if (is_first) {
         handed_over_since_ = std::chrono::steady_clock::now();
     }
-    std::vector<WaitingRecord>& waiting = handed_over_.records[run];
-    waiting.insert(waiting.end(), std::make_move_iterator(records.begin()), std::make_move_iterator(records.end()));
-    return wake;
+    return urgent_ || is_first;
 }
 
 void RecordQueue::close(RunNumber run, Closing closing) {
     {
         const std::lock_guard lock{mutex_};
-        handed_over_.closing.emplace(run, std::move(closing));
+        set_closing(run, std::move(closing));
         urgent_ = true;
     }
     changed_.notify_one();
+}
+
+void RecordQueue::set_closing(RunNumber run, Closing closing) {
+    disk_.added(bytes_of(closing.last));
+    handed_over_.runs[run].closing = std::move(closing);
 }
 
 void RecordQueue::stop() {
@@ -82,7 +93,7 @@ HandedOver RecordQueue::take(bool more, std::optional<std::chrono::steady_clock:
                             [&] { return has_barrier_ || (stopping && (!jobs_run || !results_.empty())); });
     } else if (!more) {
         --unfinished;
-        const auto has_work = [&] { return hurries() || !handed_over_.records.empty(); };
+        const auto has_work = [&] { return hurries() || handed_over_since_; };
         if (wake_at) {
             changed_.wait_until(lock, *wake_at, has_work);
         } else {
@@ -120,7 +131,7 @@ bool RecordQueue::is_urgent() const {
 
 bool RecordQueue::is_empty() const {
     const std::lock_guard lock{mutex_};
-    return handed_over_.records.empty() && handed_over_.closing.empty();
+    return handed_over_.runs.empty();
 }
 
 void RecordQueue::add_result(JobResult result) {

@@ -6,32 +6,41 @@
 // Threads        the simulation thread adds records. The storage thread takes them, and the results of jobs.
 #pragma once
 
+#include "server/recording/disk_state.h"
 #include "server/recording/run_log.h"
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
-#include <utility>
+#include <variant>
 #include <vector>
 
 namespace evod::recording {
 
-/// The records that were added and that the storage thread has not taken yet.
+/// What was added and what the storage thread has not taken yet.
 struct HandedOver {
-    std::map<RunNumber, RunLog> new_runs;
-    std::map<RunNumber, std::vector<WaitingRecord>> records;
-    std::map<RunNumber, Closing> closing;
+    struct OfRun {
+        std::optional<RunLog> added = {}; // only for a new run; with its first records
+        std::vector<WaitingRecord> records = {};
+        std::optional<Closing> closing = {};
+    };
+    std::map<RunNumber, OfRun> runs;
     bool stopping = false; // the thread must end when everything is written
 };
 
-/// The result of a job for a run. The storage thread calls it, unless the run has ended.
+/// A run that is replaced by another one, and its end.
+struct ReplacedRun {
+    RunNumber number;
+    Closing closing;
+};
+
+/// The result of a job for a run.
 struct JobResult {
-    RunNumber run = 0;
-    std::function<void(RunLog&)> apply;
+    RunNumber run;
+    std::variant<CompressedCheckpoint, LogCopied> result;
 };
 
 class RecordQueue {
@@ -40,10 +49,12 @@ class RecordQueue {
     /// A larger amount is committed at once, so that a command that arrives meanwhile waits for a smaller transaction.
     static constexpr std::size_t gathered_bytes_max = 256 << 10;
 
+    /// The state must outlive this object.
+    explicit RecordQueue(DiskState& disk) : disk_{disk} {}
+
     /// Adds a run with its first records, and the end of the run that it replaces. The storage thread takes either all
     /// of this or nothing.
-    RunNumber add_run(RunLog run, std::vector<WaitingRecord> records,
-                      std::optional<std::pair<RunNumber, Closing>> old = std::nullopt);
+    RunNumber add_run(RunLog run, std::optional<ReplacedRun> old = std::nullopt);
     void add(RunNumber run, std::vector<WaitingRecord> records);
     void close(RunNumber run, Closing closing);
     void stop();
@@ -72,15 +83,18 @@ class RecordQueue {
     std::atomic<std::size_t> unfinished = 1;
 
   private:
-    /// Returns whether the storage thread must be woken. The caller must hold mutex_.
-    bool enqueue(RunNumber run, std::vector<WaitingRecord> records);
+    // The caller of these functions must hold mutex_.
+    /// Counts records that are added. Returns whether the storage thread must be woken.
+    bool count(const std::vector<WaitingRecord>& records);
+    void set_closing(RunNumber run, Closing closing);
 
+    DiskState& disk_;
     mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
     HandedOver handed_over_;
     std::vector<JobResult> results_;
     // The times at which two records were added: the oldest one in handed_over_, and the oldest one that was taken but
-    // is not written yet.
+    // is not written yet. They do not count the records with which a file is closed.
     std::optional<std::chrono::steady_clock::time_point> handed_over_since_, taken_since_;
     RunNumber last_number_ = 0;
     bool urgent_ = false;

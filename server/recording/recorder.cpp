@@ -8,16 +8,27 @@
 
 namespace evod::recording {
 
+RunRecorder::RunRecorder(StorageThread& thread, const run_file::RunBeginning& beginning)
+    : thread_{thread}
+    , news_{beginning.identity.first_tick, beginning.identity.first_generation,
+            beginning.ended ? beginning.identity.first_generation : 0} {}
+
+void RunRecorder::pass(WaitingRecord record) {
+    std::vector<WaitingRecord> records;
+    records.push_back(std::move(record));
+    thread_.write(number_, std::move(records));
+}
+
 void RunRecorder::pass_new_records(const simulation::World& world) {
-    // Passes the records in one batch, so that a file contains either all records of a tick or none.
-    std::vector<Record> records;
+    // Passes the records together, so that a file contains either all records of a tick or none.
+    std::vector<WaitingRecord> records;
     const std::uint64_t begun = news_.generations_begun();
     news_.report(world, [&records](auto record) { records.emplace_back(std::move(record)); });
     if (news_.generations_begun() != begun) {
         since_beginning_ = {};
     }
     if (!records.empty()) {
-        thread_.write(number_, {.records = std::move(records)});
+        thread_.write(number_, std::move(records));
     }
 }
 
@@ -31,46 +42,34 @@ bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::na
 
 void RunRecorder::make_checkpoint(const simulation::World& world, base::Executor& executor) {
     news_.seen(world.moment().tick);
-    thread_.write(number_, run_file::checkpoint_of(world, journal_entries_, executor), writing_);
+    WaitingRecord checkpoint{run_file::checkpoint_of(world, journal_entries_, executor)};
+    checkpoint.writing = writing_;
+    pass(std::move(checkpoint));
     since_beginning_ = since_checkpoint_ = {};
 }
 
-run_file::JournalEntry RunRecorder::entry(CommandRecord& command) {
+WaitingRecord RunRecorder::record_of(CommandRecord command) {
     news_.seen(command.tick);
-    return {.number = ++journal_entries_,
-            .tick = command.tick,
-            .origin = std::move(command.origin),
-            .answer = std::move(command.answer),
-            .control = command.control};
+    return WaitingRecord{run_file::JournalEntry{.number = ++journal_entries_,
+                                                .tick = command.tick,
+                                                .origin = std::move(command.origin),
+                                                .answer = std::move(command.answer),
+                                                .control = command.control},
+                         command.ticket};
 }
 
 void RunRecorder::journal(CommandRecord command) {
-    std::vector<Record> records;
-    records.emplace_back(entry(command));
-    thread_.write(number_, {std::move(records), command.ticket});
+    pass(record_of(std::move(command)));
 }
 
-StorageThread::Batch RunRecorder::first(run_file::RunBeginning beginning, std::optional<CommandRecord> command) {
-    const run_file::RunIdentity& run = beginning.identity;
-    news_ = {run.first_tick, run.first_generation, beginning.ended ? run.first_generation : 0};
-    StorageThread::Batch batch{.records = run_file::RunFile::records_of(std::move(beginning))};
+Closing RunRecorder::ending(std::uint64_t tick, bool ended, std::string renamed, std::optional<CommandRecord> command) {
+    Closing closing{.renamed = std::move(renamed)};
     if (command) {
-        batch.records.emplace_back(entry(*command));
-        batch.ticket = command->ticket;
-    }
-    return batch;
-}
-
-StorageThread::Ending RunRecorder::ending(std::uint64_t tick, bool ended, std::string renamed,
-                                          std::optional<CommandRecord> command) {
-    StorageThread::Ending ending{.last = {}, .renamed = std::move(renamed)};
-    if (command) {
-        ending.last.records.emplace_back(entry(*command));
-        ending.last.ticket = command->ticket;
+        closing.last.push_back(record_of(*std::move(command)));
     }
     news_.seen(tick);
-    ending.last.records.emplace_back(run_file::EndMark{.ended = ended, .tick = news_.tick()});
-    return ending;
+    closing.last.emplace_back(run_file::EndMark{.ended = ended, .tick = news_.tick()});
+    return closing;
 }
 
 std::optional<base::Refusal> Recorder::refusal() const {
@@ -132,25 +131,26 @@ void Recorder::add(const std::string& world, RunRecorder run) {
     EVOD_ASSERT(added);
 }
 
-void Recorder::begin(run_file::RunBeginning beginning, std::optional<CommandRecord> command) {
-    RunRecorder run{thread_};
-    const run_file::RunIdentity identity = beginning.identity;
-    run.number_ =
-        thread_.create(folder_.file_of(identity.name), identity, run.first(std::move(beginning), std::move(command)));
-    add(identity.name, std::move(run));
+void Recorder::begin(run_file::RunBeginning beginning, std::optional<CommandRecord> command,
+                     std::optional<ReplacedRun> old) {
+    const std::string world = beginning.identity.name;
+    RunRecorder run{thread_, beginning};
+    std::optional<WaitingRecord> record;
+    if (command) {
+        record = run.record_of(*std::move(command));
+    }
+    run.number_ = thread_.create(folder_.file_of(world), std::move(beginning), std::move(record), std::move(old));
+    add(world, std::move(run));
 }
 
 void Recorder::begin_after_reset(run_file::RunBeginning beginning, const simulation::RunId& ended_run,
                                  std::uint64_t tick, std::optional<CommandRecord> command) {
-    const run_file::RunIdentity identity = beginning.identity;
-    const auto old = runs_.find(identity.name);
-    EVOD_ASSERT(old != runs_.end());
-    RunRecorder run{thread_};
-    run.number_ = thread_.replace(
-        old->second.number_, old->second.ending(tick, true, folder_.ended_file_of(identity.name, ended_run)),
-        folder_.file_of(identity.name), identity, run.first(std::move(beginning), std::move(command)));
-    runs_.erase(old);
-    add(identity.name, std::move(run));
+    const std::string world = beginning.identity.name;
+    auto old = runs_.extract(world);
+    EVOD_ASSERT(!old.empty());
+    RunRecorder& ended = old.mapped();
+    begin(std::move(beginning), std::move(command),
+          ReplacedRun{ended.number_, ended.ending(tick, true, folder_.ended_file_of(world, ended_run))});
 }
 
 RunRecorder& Recorder::resume(const std::string& world, std::unique_ptr<run_file::RunFile> file,
@@ -170,10 +170,9 @@ void Recorder::end(const std::string& world, const simulation::RunId& run_id, Co
         leaving = std::make_shared<Leaving>(0);
     }
     ++*leaving;
-    StorageThread::Ending ending =
-        run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command));
-    ending.leaving = leaving;
-    thread_.close(run->second.number_, std::move(ending));
+    Closing closing = run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command));
+    closing.leaving = leaving;
+    thread_.close(run->second.number_, std::move(closing));
     runs_.erase(run);
 }
 

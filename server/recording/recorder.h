@@ -86,7 +86,7 @@ class RunRecorder {
     }
     void journal(CommandRecord command);
     /// Requests a receipt for all records passed so far. If they cannot be written now, it is a refusal.
-    void once_written(Ticket ticket) { thread_.write(number_, {{}, ticket}); }
+    void once_written(Ticket ticket) { pass(WaitingRecord{ticket}); }
     /// Whether a checkpoint is due right after the last followed tick.
     ///
     /// spent  time that the simulation took since the previous call.
@@ -97,15 +97,14 @@ class RunRecorder {
 
   private:
     friend class Recorder;
-    explicit RunRecorder(StorageThread& thread) : thread_{thread} {}
+    /// Constructs the recorder of a new run, which has no number yet.
+    RunRecorder(StorageThread& thread, const run_file::RunBeginning& beginning);
+    void pass(WaitingRecord record);
     void pass_new_records(const simulation::World& world);
-    run_file::JournalEntry entry(CommandRecord& command);
-    /// The records with which the file of a run begins.
-    StorageThread::Batch first(run_file::RunBeginning beginning, std::optional<CommandRecord> command);
+    WaitingRecord record_of(CommandRecord command);
     /// The end mark after `tick`, for a run that is over or whose server stops. If a command ended the run, its record
     /// precedes the end mark.
-    StorageThread::Ending ending(std::uint64_t tick, bool ended, std::string renamed = {},
-                                 std::optional<CommandRecord> command = {});
+    Closing ending(std::uint64_t tick, bool ended, std::string renamed = {}, std::optional<CommandRecord> command = {});
 
     StorageThread& thread_;
     RunNumber number_ = 0;
@@ -151,7 +150,9 @@ class Recorder {
     }
 
     /// Begins to record a run that has just begun. If a command began the run, it is recorded too.
-    void begin(run_file::RunBeginning beginning, std::optional<CommandRecord> command = {});
+    void begin(run_file::RunBeginning beginning, std::optional<CommandRecord> command = {}) {
+        begin(std::move(beginning), std::move(command), std::nullopt);
+    }
     /// Like begin(), for a world that was reset. Its previous run ended after `tick`, and the file of that run gets the
     /// name of an ended run.
     void begin_after_reset(run_file::RunBeginning beginning, const simulation::RunId& ended_run, std::uint64_t tick,
@@ -167,6 +168,7 @@ class Recorder {
     void close_all(const simulation::Laboratory& laboratory);
 
   private:
+    void begin(run_file::RunBeginning beginning, std::optional<CommandRecord> command, std::optional<ReplacedRun> old);
     void add(const std::string& world, RunRecorder run);
 
     run_file::DataFolder& folder_;

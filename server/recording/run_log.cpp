@@ -74,13 +74,19 @@ WaitingRecord* RunLog::next_to_compress() {
     return nullptr;
 }
 
-void RunLog::compressed(run_file::StoredCheckpoint checkpoint, std::chrono::nanoseconds took) {
+void RunLog::add(std::vector<WaitingRecord> records) {
+    for (WaitingRecord& record : records) {
+        (record.writing ? checkpoints : waiting).push_back(std::move(record));
+    }
+}
+
+void RunLog::apply(CompressedCheckpoint compressed) {
     compressing = false;
     for (std::vector<WaitingRecord>* records : {&waiting, &checkpoints}) {
         for (WaitingRecord& record : *records) {
             if (std::exchange(record.being_compressed, false)) {
-                record.record = std::move(checkpoint);
-                record.took = took;
+                record.record = std::move(compressed.checkpoint);
+                record.took = compressed.took;
                 return;
             }
         }
@@ -240,7 +246,7 @@ bool RunLog::log_copy_due() {
     return true;
 }
 
-void RunLog::log_copied() {
+void RunLog::apply(LogCopied) {
     log_copy.running = false;
     constexpr std::uint32_t pages_factor_max = 4;
     if (!file) {

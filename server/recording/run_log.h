@@ -48,6 +48,14 @@ class FileNameWatch {
     std::optional<Known> known_;
 };
 
+/// The result of a job that has compressed the checkpoint of a run.
+struct CompressedCheckpoint {
+    run_file::StoredCheckpoint checkpoint;
+    std::chrono::nanoseconds took;
+};
+/// The result of a job that has copied the log of a run into its file.
+struct LogCopied {};
+
 struct RunLog {
     /// The creation of a new file. The file has the name NAME.evod-next or does not exist yet.
     struct Creation {
@@ -83,7 +91,11 @@ struct RunLog {
     bool is_finished() const { return closing && closing->finished; }
     /// The first uncompressed checkpoint; nullptr if there is none, or while another one is being compressed.
     WaitingRecord* next_to_compress();
-    void compressed(run_file::StoredCheckpoint checkpoint, std::chrono::nanoseconds took);
+    /// Adds records that wait.
+    void add(std::vector<WaitingRecord> records);
+    void apply(CompressedCheckpoint compressed);
+    /// If the log has meanwhile grown to four times its limit, copies the rest.
+    void apply(LogCopied copied);
 
     /// Opens or creates the file. Returns true for a new file, which then has an open transaction.
     base::Result<bool> open();
@@ -105,8 +117,6 @@ struct RunLog {
 
     /// Whether the log should be copied now. If so, the caller must start the copy.
     bool log_copy_due();
-    /// Must be called when a copy has ended. If the log has meanwhile grown to four times its limit, copies the rest.
-    void log_copied();
 
   private:
     base::Refusal fail(base::Refusal why);

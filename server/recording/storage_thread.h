@@ -37,6 +37,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace evod::recording {
@@ -63,31 +64,18 @@ class StorageThread {
     /// Sets the function that receives all receipts. Must be called before the first record with a ticket is passed.
     void set_receipt_sink(ReceiptSink sink) { receipt_sink_ = std::move(sink); }
 
-    /// The records of one transaction. A batch without records is a barrier.
-    struct Batch {
-        std::vector<Record> records = {};
-        Ticket ticket = 0;
-    };
-    /// The last records of a run. Then its file is closed and, if `renamed` is not empty, renamed to that path. A damaged
-    /// file gets no last records.
-    struct Ending {
-        Batch last; // the last of these records is the end mark
-        std::string renamed;
-        std::shared_ptr<Leaving> leaving = {}; // decremented when the file has its new name
-    };
-
-    /// Creates a run with a new file and its first records.
-    RunNumber create(const std::string& path, run_file::RunIdentity identity, Batch first);
-    /// Like create(), but the new run replaces another one, which ends.
-    RunNumber replace(RunNumber old_run, Ending ending, const std::string& path, run_file::RunIdentity identity,
-                      Batch first);
+    /// Creates a run with a new file.
+    ///
+    /// command  the command that has begun the run.
+    /// old      the run that the new one replaces.
+    RunNumber create(const std::string& path, run_file::RunBeginning beginning,
+                     std::optional<WaitingRecord> command = {}, std::optional<ReplacedRun> old = {});
     /// Continues a run whose file is already open.
     RunNumber adopt(std::unique_ptr<run_file::RunFile> file);
-    void write(RunNumber run, Batch batch);
-    /// Writes a checkpoint. The run must have no other waiting checkpoint. writing->waits is true until the checkpoint
-    /// is on the disk.
-    void write(RunNumber run, run_file::Checkpoint checkpoint, std::shared_ptr<CheckpointWriting> writing);
-    void close(RunNumber run, Ending ending);
+    /// Writes records in one transaction. A run must have at most one waiting checkpoint.
+    void write(RunNumber run, std::vector<WaitingRecord> records) { queue_.add(run, std::move(records)); }
+    /// Writes the last records of a run. Then its file is closed and renamed.
+    void close(RunNumber run, Closing closing) { queue_.close(run, std::move(closing)); }
 
     /// Whether everything passed so far is written and no background work is left.
     bool idle() const { return disk_.waiting_bytes() == 0 && queue_.unfinished == 0; }
@@ -102,7 +90,7 @@ class StorageThread {
   private:
     const run_file::RunFile::Options options_;
     DiskState disk_;
-    RecordQueue queue_;
+    RecordQueue queue_{disk_};
     LogJobs jobs_{queue_};
     StorageTimes times_; // the storage thread writes them
     ReceiptSink receipt_sink_ = [](const Receipt&) {};

@@ -76,18 +76,18 @@ bool StorageWorker::take(bool more) {
 }
 
 void StorageWorker::distribute(HandedOver& taken) {
-    runs_.merge(taken.new_runs);
-    for (auto& [number, records] : taken.records) {
-        RunLog& run = runs_[number];
-        for (WaitingRecord& record : records) {
-            (record.writing ? run.checkpoints : run.waiting).push_back(std::move(record));
+    for (auto& [number, of_run] : taken.runs) {
+        if (of_run.added) {
+            runs_.emplace(number, *std::move(of_run.added));
         }
+        RunLog& run = runs_.at(number);
+        run.add(std::move(of_run.records));
         if (run.is_damaged()) {
             refuse_records_of_damaged(run);
         }
-    }
-    for (auto& [number, closing] : taken.closing) {
-        runs_[number].closing = std::move(closing);
+        if (of_run.closing) {
+            run.closing = std::move(of_run.closing);
+        }
     }
 }
 
@@ -139,7 +139,7 @@ bool StorageWorker::write_records(RunLog& run) {
     if (run.creation && run.creation->committed && !rename_to_final_name(run)) {
         return false;
     }
-    report_written(run.written);
+    release(run.written);
     if (run.closing) {
         return run.closing->replaced || end(run);
     }
@@ -214,12 +214,8 @@ bool StorageWorker::end(RunLog& run) {
     if (closing.finished) {
         return true;
     }
-    const auto& last = closing.last.back().record;
-    if (last && std::holds_alternative<run_file::EndMark>(*last) && std::get<run_file::EndMark>(*last).ended) {
-        for (const WaitingRecord& dropped : std::exchange(run.checkpoints, {})) {
-            dropped.writing->waits = false;
-            --queue_.unfinished;
-        }
+    if (closing.ends_run()) {
+        release(run.checkpoints); // without writing them
     }
     if (!run.checkpoints.empty()) {
         return false; // closes the file after the checkpoints are written
@@ -247,7 +243,7 @@ void StorageWorker::finish(Closing& closing) {
     if (closing.leaving) {
         --*closing.leaving;
     }
-    report_written(closing.last);
+    release(closing.last);
 }
 
 bool StorageWorker::background_step() {
@@ -273,21 +269,20 @@ bool StorageWorker::background_step(RunLog& run) {
     }
     if (*step) {
         recovered(run);
-        report_written(run.written);
+        release(run.written);
         jobs_.copy_log_if_due(run);
     }
     return *step;
 }
 
-void StorageWorker::report_written(std::vector<WaitingRecord>& records) {
-    std::size_t bytes = 0;
-    for (const WaitingRecord& record : std::exchange(records, {})) {
-        bytes += record.bytes;
+void StorageWorker::release(std::vector<WaitingRecord>& records, const std::optional<base::Refusal>& refused) {
+    const std::vector<WaitingRecord> released = std::exchange(records, {});
+    for (const WaitingRecord& record : released) {
         if (record.ticket != 0) {
-            if (!record.is_barrier()) { // only a batch with a command has a record and a ticket
-                times_.journal_wait.add(std::chrono::steady_clock::now() - record.handed_over);
+            if (!refused && !record.is_barrier()) { // only a command has a record and a ticket
+                times_.journal_wait.add(WaitingRecord::Clock::now() - record.since);
             }
-            receipts_({.ticket = record.ticket});
+            receipts_({.ticket = record.ticket, .refused = refused});
         }
         if (record.writing) {
             record.writing->took = record.took;
@@ -295,22 +290,7 @@ void StorageWorker::report_written(std::vector<WaitingRecord>& records) {
             --queue_.unfinished;
         }
     }
-    disk_.written(bytes);
-}
-
-void StorageWorker::refuse(std::vector<WaitingRecord>& records, const base::Refusal& why) {
-    std::size_t bytes = 0;
-    for (const WaitingRecord& record : std::exchange(records, {})) {
-        bytes += record.bytes;
-        if (record.ticket != 0) {
-            receipts_({.ticket = record.ticket, .refused = why});
-        }
-        if (record.writing) {
-            record.writing->waits = false;
-            --queue_.unfinished;
-        }
-    }
-    disk_.written(bytes);
+    disk_.written(bytes_of(released));
 }
 
 void StorageWorker::refuse_barriers() {
@@ -323,14 +303,14 @@ void StorageWorker::refuse_barriers() {
             std::vector<WaitingRecord> barriers;
             std::ranges::copy_if(*records, std::back_inserter(barriers), &WaitingRecord::is_barrier);
             std::erase_if(*records, std::mem_fn(&WaitingRecord::is_barrier));
-            refuse(barriers, *why);
+            release(barriers, why);
         }
     }
 }
 
 void StorageWorker::refuse_records_of_damaged(RunLog& run) {
     for (std::vector<WaitingRecord>* records : {&run.written, &run.waiting, &run.checkpoints}) {
-        refuse(*records, run.fault->why);
+        release(*records, run.fault->why);
     }
 }
 
@@ -385,9 +365,8 @@ void StorageWorker::keep_old_run(RunLog& replacement) {
         return;
     }
     Closing& closing = *old->second.closing;
-    refuse(closing.last, replacement.fault->why);
-    closing = Closing{.last = {}, .renamed = {}};
-    closing.last.emplace_back();
+    release(closing.last, replacement.fault->why);
+    closing = {};
     (void)write_records(old->second);
 }
 
@@ -399,7 +378,7 @@ bool StorageWorker::end_damaged(RunLog& run) {
     const std::string name_now = run.creation ? run_file::DataFolder::next_file_of(run.path) : run.path;
     std::error_code error;
     if (closing.renamed.empty()) {
-        refuse(closing.last, run.fault->why);
+        release(closing.last, run.fault->why);
     } else if (std::filesystem::exists(name_now, error)) {
         if (const auto renamed = run_file::rename_run_file(name_now, closing.renamed); !renamed) {
             fail(renamed.error());

@@ -58,10 +58,10 @@ class StorageWorker {
     bool background_step();
     bool background_step(RunLog& run);
 
-    /// Gives the receipts of the records and frees their memory. They must be on the disk.
-    void report_written(std::vector<WaitingRecord>& records);
-    /// Gives refused receipts for the records and frees their memory. They will not be written.
-    void refuse(std::vector<WaitingRecord>& records, const base::Refusal& why);
+    /// Gives the receipts of records that are on the disk, or will not be written, and frees the memory of the records.
+    ///
+    /// refused  why they will not be written; nullopt: they are on the disk.
+    void release(std::vector<WaitingRecord>& records, const std::optional<base::Refusal>& refused = {});
     /// Refuses the barriers of the runs whose records cannot be written now.
     void refuse_barriers();
     void refuse_records_of_damaged(RunLog& run);

@@ -62,4 +62,17 @@ std::size_t bytes_of(const Record& record) {
                       record);
 }
 
+std::size_t bytes_of(const std::vector<WaitingRecord>& records) {
+    std::size_t bytes = 0;
+    for (const WaitingRecord& record : records) {
+        bytes += record.bytes;
+    }
+    return bytes;
+}
+
+bool Closing::ends_run() const {
+    const auto* mark = last.empty() ? nullptr : std::get_if<run_file::EndMark>(&*last.back().record);
+    return mark != nullptr && mark->ended;
+}
+
 } // namespace evod::recording

@@ -50,9 +50,8 @@ int main(int argc, char** argv) {
     std::vector<double> plain_ms, with_checkpoint_ms, copying_ms;
     {
         recording::StorageThread thread{{}};
-        const auto number =
-            thread.create(path, {.name = "w", .run_id = {}, .seed = {1}, .parameters = world.parameters().active}, {});
-        recording::RunRecorder recorder{thread, number, {}, 0};
+        const auto number = thread.create(path, run_file::beginning_of_run(world, "w", {}));
+        recording::RunRecorder recorder{thread, number, {.generations = 1}, 0};
         recorder.follow(world);
         for (std::uint32_t tick = 0; tick < 60; ++tick) {
             world.advance_tick(*executor);

@@ -423,6 +423,7 @@ class Http(Case):
 
     def test_too_many_connections_get_503(self):
         server = self.serve()
+        self.wait_well(server)  # the threads do not all exist yet when the server listens
         threads = {pathlib.Path(task, "comm").read_text().strip(): int(task.name)
                    for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir()}
         request = b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"

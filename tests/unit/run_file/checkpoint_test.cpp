@@ -444,10 +444,9 @@ TEST_F(CheckpointTest, ACheckpointIsDueWhenSimulatingWouldTakeLong) {
     parameters::Parameters parameters = small_world();
     parameters.generation_s = 1000;
     simulation::World world{parameters, {1}};
+    const auto number = thread->create(data.file_of("w"), beginning_of_run(world, "w", {}));
+    RunRecorder recorder{*thread, number, {.generations = 1}, 0};
     world.advance_tick(executor);
-    const auto number =
-        thread->create(data.file_of("w"), {.name = "w", .run_id = {}, .seed = {1}, .parameters = parameters}, {});
-    RunRecorder recorder{*thread, number, {}, 0};
     recorder.follow(world);
     EXPECT_FALSE(recorder.checkpoint_due(world, 2s)) << "as long as that is not too long";
     EXPECT_TRUE(recorder.checkpoint_due(world, 1ms));
