@@ -138,6 +138,8 @@ class Recorder {
     std::optional<std::string> trouble() const { return thread_.disk().trouble(); }
     /// The storage thread calls `changed` when has_room(), trouble() or faults() has changed.
     void when_changed(std::function<void()> changed) { thread_.disk().when_changed(std::move(changed)); }
+    /// Returns a new ticket for a record.
+    Ticket next_ticket() { return ++last_ticket_; }
     /// Must be called before the first record with a ticket.
     void set_receipt_sink(ReceiptSink sink) { thread_.set_receipt_sink(std::move(sink)); }
 
@@ -173,6 +175,7 @@ class Recorder {
 
     run_file::DataFolder& folder_;
     StorageThread& thread_;
+    Ticket last_ticket_ = 0;
     std::map<std::string, RunRecorder, std::less<>> runs_;                 // by name of the world
     std::map<std::string, std::shared_ptr<Leaving>, std::less<>> leaving_; // by name of the world
 };

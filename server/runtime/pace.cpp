@@ -130,7 +130,9 @@ std::optional<Clock::time_point> Pace::serve(std::vector<Contender>& contenders,
     if (next.world != nullptr) {
         advance_slice(*next.world, track_of(*next.world), end);
     } else {
-        rules_.advance_seek(next.seek, [&] { return tools_.clock.now() >= end || tools_.mailbox.pending() || tools_.demand.changed(); });
+        rules_.advance_seek(next.seek, [&] {
+            return tools_.clock.now() >= end || tools_.mailbox.pending() || tools_.demand.changed();
+        });
     }
     const auto now = tools_.clock.now();
     shares_.spend(user, now - began);
@@ -219,8 +221,7 @@ void Pace::measure_and_show(simulation::Entry& world, Track& track, Clock::time_
         return;
     }
     const auto began = tools_.clock.now();
-    outputs_.snapshot(
-        pool_.take(world, track.snapshots.wanted_islands(world.world), track.snapshots.shows_change()));
+    outputs_.snapshot(pool_.take(world, track.snapshots.wanted_islands(world.world), track.snapshots.shows_change()));
     if (track.counted) {
         track.counted->snapshot_time.add(tools_.clock.now() - began);
     }

@@ -104,7 +104,7 @@ class Pace {
     };
     Track& track_of(const simulation::Entry& world) { return tracks_.find(world.name)->second; }
     const Track& track_of(const simulation::Entry& world) const { return tracks_.find(world.name)->second; }
-    bool wants_tick(const simulation::Entry& world) const { 
+    bool wants_tick(const simulation::Entry& world) const {
         return world.wants_tick() && !rules_.waits_for_disk(world) && !rules_.is_held(world);
     }
     void follow(simulation::Entry& world);

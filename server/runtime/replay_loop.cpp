@@ -30,26 +30,37 @@ Refusal no_room(std::string message) {
 
 } // namespace
 
-ReplayLoop::ReplayLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
-                       LoopOutputs outputs, std::optional<FileReplay> file)
-    : SimulationLoop{mailbox, demand, executor, clock, std::move(outputs)}
-    , seeks_{mailbox, jobs_, executor}
-    , shown_{laboratory_, mailbox, jobs_} {
+ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file)
+    : SimulationLoop{tools, std::move(outputs)}
+    , seeks_{tools.mailbox, jobs_, tools.executor}
+    , shown_{laboratory_, tools.mailbox, jobs_} {
     if (file) {
         shown_.show(file->name, file->run, {}, std::move(file->shown));
     }
 }
 
 void ReplayLoop::handle(Mail& mail) {
-    std::visit(base::Overloaded{[this](BringWorld& request) { bring(request); },
-                                [this](SeekRead& read) { seeks_.take(read); },
-                                [this](RecordsRead& read) { shown_.take(read); },
-                                [this, &mail](SessionEnded& ended) {
-                                    forget(ended.session);
-                                    SimulationLoop::handle(mail);
-                                },
-                                [this, &mail](auto&) { SimulationLoop::handle(mail); }},
-               mail);
+    std::visit(
+        base::Overloaded{[this](BringWorld& request) { bring(request); }, [this](SeekRead& read) { seeks_.take(read); },
+                         [this](RecordsRead& read) { shown_.take(read); }, [this](FindRun& run) { find_run(run); },
+                         [&](ReplayMail& request) {
+                             if (!answer(request)) {
+                                 SimulationLoop::handle(mail);
+                             }
+                         },
+                         [&](CommandMail& command) {
+                             if (std::holds_alternative<simulation::ForkWorld>(command.command)) {
+                                 bring({.fork = std::move(command), .run = {}});
+                             } else {
+                                 SimulationLoop::handle(mail);
+                             }
+                         },
+                         [&](SessionEnded& ended) {
+                             forget(ended.session);
+                             SimulationLoop::handle(mail);
+                         },
+                         [&](auto&) { SimulationLoop::handle(mail); }},
+        mail);
 }
 
 void ReplayLoop::update_worlds() {
@@ -58,7 +69,7 @@ void ReplayLoop::update_worlds() {
     }
 }
 
-void ReplayLoop::list_contenders(std::vector<Contender>& contenders) {
+void ReplayLoop::list_seeks(std::vector<Pace::Contender>& contenders) {
     for (auto& [number, seek] : seeks_.all()) {
         if (seek.at) {
             contenders.push_back({.user = seek.user, .turn = &seek.turn, .seek = number});
@@ -83,7 +94,7 @@ void ReplayLoop::find_run(const FindRun& mail) {
     }
     const replay::StoredRun* run = shown_.run_of((*entry)->name);
     if (run == nullptr) {
-        return SimulationLoop::find_run(mail);
+        return runs_.find(mail);
     }
     const std::string& original = (*entry)->replay->replay_of;
     outputs_.reply(RunFound{mail, FoundRun{.world = original.empty() ? (*entry)->name : original,
@@ -91,11 +102,14 @@ void ReplayLoop::find_run(const FindRun& mail) {
                                            .generation = (*entry)->world.moment().generation}});
 }
 
-void ReplayLoop::answer(const ReplayMail& mail) {
-    std::visit(base::Overloaded{[&](const OpenReplay& request) { open(mail, request); },
-                                [&](const Seek& request) { seek(mail, request); },
-                                [&](const CloseReplay& request) { close(mail, request); }},
-               mail.request);
+bool ReplayLoop::answer(const ReplayMail& mail) {
+    return std::visit(base::Overloaded{[&](const OpenReplay& request) {
+                                           open(mail, request);
+                                           return true;
+                                       },
+                                       [&](const Seek& request) { return seek(mail, request); },
+                                       [&](const CloseReplay& request) { return close(mail, request); }},
+                      mail.request);
 }
 
 void ReplayLoop::open(const ReplayMail& mail, const OpenReplay& request) {
@@ -111,11 +125,11 @@ void ReplayLoop::open(const ReplayMail& mail, const OpenReplay& request) {
     seeks_.begin({.purpose = {mail}, .run = mail.run->run, .to = request.at, .until = mail.run->until});
 }
 
-void ReplayLoop::seek(const ReplayMail& mail, const Seek& request) {
+bool ReplayLoop::seek(const ReplayMail& mail, const Seek& request) {
     const auto entry = std::as_const(laboratory_).find(request.world);
     const replay::StoredRun* run = entry ? shown_.run_of((*entry)->name) : nullptr;
     if (run == nullptr) {
-        return SimulationLoop::answer(mail);
+        return false;
     }
     const simulation::Replay& seen = *(*entry)->replay;
     replay::RecordedUntil until{.generation = seen.last_generation, .tick = seen.last_tick};
@@ -125,20 +139,18 @@ void ReplayLoop::seek(const ReplayMail& mail, const Seek& request) {
         until.tick = std::max(until.tick, mail.run->until.tick);
     }
     seeks_.begin({.purpose = {mail, (*entry)->name}, .run = *run, .to = request.to, .until = until});
+    return true;
 }
 
-void ReplayLoop::close(const ReplayMail& mail, const CloseReplay& request) {
+bool ReplayLoop::close(const ReplayMail& mail, const CloseReplay& request) {
     const ShownReplays::Owner* owner = shown_.owner_of(request.world);
     if (owner == nullptr || owner->session == 0) {
-        return outputs_.reply(ReplayDone{mail, simulation::no_such_replay(request.world)});
+        return false;
     }
     shown_.close(request.world);
     seeks_.cancel_of_replay(request.world);
     outputs_.reply(ReplayDone{mail, request.world});
-}
-
-void ReplayLoop::fork(CommandMail& mail) {
-    bring({.fork = std::move(mail), .run = {}});
+    return true;
 }
 
 void ReplayLoop::bring(const BringWorld& mail) {
@@ -159,10 +171,10 @@ void ReplayLoop::bring(const BringWorld& mail) {
         if (const replay::StoredRun* run = shown_.run_of((*entry)->name)) {
             return begin(*run, {});
         }
-        return brought(mail, (*entry)->run_id, run_of(**entry).error());
+        return brought(mail, (*entry)->run_id, runs_.run_of(**entry).error());
     }
     brought(mail, (*entry)->run_id,
-            base::within_memory([&]() -> Result<simulation::World> { return world.copy(executor_); }));
+            base::within_memory([&]() -> Result<simulation::World> { return world.copy(tools_.executor); }));
 }
 
 void ReplayLoop::brought(const BringWorld& mail, const simulation::RunId& run_id, Result<simulation::World> world) {
@@ -196,7 +208,7 @@ void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const 
     const simulation::Entry& entry = **laboratory_.find(name);
     outputs_.reply(ReplayDone{mail, name, protocol::to_proto(entry)});
     if (!moved.empty()) {
-        show_change(name);
+        pace_.show_change(name);
         outputs_.events(laboratory_, {{name, entry.run_id, entry.world.moment().tick, simulation::GoalReached{}}});
     }
 }

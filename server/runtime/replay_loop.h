@@ -1,7 +1,8 @@
 // Replay loop: the simulation loop of the replays, which are worlds that show stored runs, and of the seeks that move
 // them. It has a laboratory of its own, and shares nothing with the loop of the live worlds.
 //
-// A server that shows a run file has only this loop. Worlds that clients then create live in it, next to the replays.
+// A server that shows a run file has only this loop. Worlds that clients then create live in it, next to the replays, so
+// it handles commands, too.
 //
 // Threads      only the thread of the replays calls it.
 // Determinism  a replay reproduces a run bit for bit.
@@ -24,25 +25,23 @@ class ReplayLoop final : public SimulationLoop {
     /// All references must outlive the loop.
     ///
     /// file  the replay of a run file that the server shows from its start.
-    ReplayLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
-               std::optional<FileReplay> file = {});
+    ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file = {});
 
   private:
     void handle(Mail& mail) override;
     void update_worlds() override;
-    void list_contenders(std::vector<Contender>& contenders) override;
+    void list_seeks(std::vector<Pace::Contender>& contenders) override;
     void advance_seek(std::uint64_t seek, const std::function<bool()>& stop) override { seeks_.advance(seek, stop); }
-    bool is_seeking() const override { return seeks_.under_way(); }
     void after_tick(simulation::Entry& entry) override;
     std::optional<Clock::time_point> refresh(Clock::time_point now) override { return shown_.refresh(now); }
     std::string user_of(const simulation::Entry& entry) const override;
-    void find_run(const FindRun& mail) override;
-    void answer(const ReplayMail& mail) override;
-    void fork(CommandMail& mail) override;
 
+    void find_run(const FindRun& mail);
+    // The following functions return false if the request names a world that is not a replay.
+    bool answer(const ReplayMail& mail);
+    bool seek(const ReplayMail& mail, const Seek& request);
+    bool close(const ReplayMail& mail, const CloseReplay& request);
     void open(const ReplayMail& mail, const OpenReplay& request);
-    void seek(const ReplayMail& mail, const Seek& request);
-    void close(const ReplayMail& mail, const CloseReplay& request);
     void bring(const BringWorld& mail);
     void finish(Seeks::Ended ended);
     void finish(const ReplayMail& mail, const std::string& moved, const replay::StoredRun& run,

@@ -12,7 +12,7 @@ void Simulations::start(Start with) {
     if (shows_file_) {
         replays_.thread = std::make_unique<SimulationThread>(
             SimulationThread::Options{.name = "simulation"}, replays_.mailbox,
-            std::make_unique<ReplayLoop>(replays_.mailbox, replays_.demand, with.executor, with.clock,
+            std::make_unique<ReplayLoop>(LoopTools{replays_.mailbox, replays_.demand, with.executor, with.clock},
                                          std::move(with.outputs), std::move(with.file)));
         return;
     }
@@ -20,14 +20,14 @@ void Simulations::start(Start with) {
     of_replays.counted = nullptr;
     live_.thread = std::make_unique<SimulationThread>(
         SimulationThread::Options{.name = "simulation"}, live_.mailbox,
-        std::make_unique<SimulationLoop>(live_.mailbox, live_.demand, with.executor, with.clock,
+        std::make_unique<SimulationLoop>(LoopTools{live_.mailbox, live_.demand, with.executor, with.clock},
                                          std::move(with.outputs), std::move(with.laboratory), with.recorder),
         with.recorder);
     // The threads of the pool inherit the priority of the thread that starts them, which is that of the replays.
     replay_executor_ = std::make_unique<jobs::ThreadPool>(with.executor.thread_count());
     replays_.thread = std::make_unique<SimulationThread>(
         SimulationThread::Options{.name = "replays", .niceness = replay_niceness}, replays_.mailbox,
-        std::make_unique<ReplayLoop>(replays_.mailbox, replays_.demand, *replay_executor_, with.clock,
+        std::make_unique<ReplayLoop>(LoopTools{replays_.mailbox, replays_.demand, *replay_executor_, with.clock},
                                      std::move(of_replays)));
 }
 

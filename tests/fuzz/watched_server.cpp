@@ -109,17 +109,11 @@ WatchedServer::WatchedServer()
                   host_,
                   [this] { boost::asio::post(context_, [this] { go_away(); }); },
                   [] { return v1::Metrics{}; }}
-    , loop_{mailbox_,
-            simulations_.part_of("").demand,
-            executor_,
-            clock(),
+    , loop_{{mailbox_, simulations_.part_of("").demand, executor_, clock()},
             {.events = streams_.outlet(outbox_),
              .snapshot = [this](runtime::SnapshotPtr snapshot) { outbox_.snapshot(std::move(snapshot)); },
              .reply = [this](runtime::Reply reply) { check_reply(std::move(reply)); }}}
-    , replays_{simulations_.mailbox_of("w@1"),
-               simulations_.part_of("w@1").demand,
-               executor_,
-               clock(),
+    , replays_{{simulations_.mailbox_of("w@1"), simulations_.part_of("w@1").demand, executor_, clock()},
                {.events = [](auto&&...) {},
                 .snapshot = [](runtime::SnapshotPtr) {},
                 .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); }}} {

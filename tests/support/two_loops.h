@@ -22,8 +22,8 @@ class TwoLoops {
              runtime::LoopOutputs outputs, simulation::Laboratory laboratory = {},
              recording::Recorder* recorder = nullptr)
         : on_answer_{std::move(on_answer)}
-        , live{live_.mailbox, live_.demand, executor, clock, with_reply(outputs), std::move(laboratory), recorder}
-        , replays{replays_.mailbox, replays_.demand, executor, clock, of_replays(with_reply(outputs))} {}
+        , live{{live_.mailbox, live_.demand, executor, clock}, with_reply(outputs), std::move(laboratory), recorder}
+        , replays{{replays_.mailbox, replays_.demand, executor, clock}, of_replays(with_reply(outputs))} {}
 
     runtime::Simulations simulations{false};
     /// Sees every reply, on the thread that gives it. Returns whether it has handled the reply.

@@ -195,7 +195,8 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/run_file", "run_file_lock"): "unit/experiments/run_recording_test and system/run_test: it excludes other programs",
     ("server/runtime", "demand"): "unit/network/streams_test",
     ("server/runtime", "mpi_exchange"): "system/mpi_test: it needs mpirun",
-    ("server/runtime", "replies simulation_loop_commands snapshot"): "unit/runtime/simulation_loop_test",
+    ("server/runtime", "command_handler pace replies run_finder snapshot"):
+        "unit/runtime/simulation_loop_test, world_builds_test and replay_loop_test: parts of the loop",
     ("server/runtime", "seeks shown_replays"): "unit/runtime/replay_loop_test and system/past_test",
     ("server/jobs", "this_thread"): "unit/jobs/job_queue_test",
     ("server/simulation", "commands items_kernels organism_kernels statistics"):

@@ -48,10 +48,7 @@ QueryMail query(std::uint64_t session = 1) {
 class Loop : public testing::Test {
   protected:
     Loop()
-        : loop{mailbox,
-               demand,
-               executor,
-               clock,
+        : loop{{mailbox, demand, executor, clock},
                {.events =
                     [this](const Laboratory&, std::vector<simulation::Event> reported) {
                         events.insert(events.end(), reported.begin(), reported.end());
@@ -202,7 +199,7 @@ TEST_F(Loop, FullSpeedRunsInSlices) {
     send(simulation::Run{"w", {}});
     clock.per_look = 100us; // the length of a tick
     EXPECT_TRUE(loop.pass());
-    EXPECT_NEAR(static_cast<double>(tick()), SimulationLoop::slice / 100us, 3);
+    EXPECT_NEAR(static_cast<double>(tick()), Pace::slice / 100us, 3);
 }
 
 TEST_F(Loop, ASliceEndsWhenMailArrives) {
@@ -210,10 +207,7 @@ TEST_F(Loop, ASliceEndsWhenMailArrives) {
     auto create_other = create("quick", 2);
     create_other.parameters.fitness = parameters::FitnessFunction::GeneSum;
     bool sent = false;
-    SimulationLoop other{mailbox,
-                         demand,
-                         executor,
-                         clock,
+    SimulationLoop other{{mailbox, demand, executor, clock},
                          {.events =
                               [&](const Laboratory&, std::vector<simulation::Event>) {
                                   if (!sent) {
@@ -654,7 +648,7 @@ TEST(SimulationThread, ReproducesTheHash) {
     SimulationThread thread{{},
                             mailbox,
                             std::make_unique<SimulationLoop>(
-                                mailbox, demand, executor, clock,
+                                {mailbox, demand, executor, clock},
                                 LoopOutputs{.events = [](const Laboratory&, std::vector<simulation::Event>) {},
                                             .snapshot = [](SnapshotPtr) {},
                                             .reply =
@@ -697,8 +691,8 @@ TEST_F(Loop, SlowTicksGetCheckpointsThatChangeNothing) {
         recording::Recorder recorder{*data, thread};
         clock.per_look = per_look;
         Mailbox letters;
-        SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}},
-                            {},      &recorder};
+        SimulationLoop kept{
+            {letters, demand, executor, clock}, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}}, {}, &recorder};
         const auto apply = [&](simulation::Command command) {
             letters.try_push(CommandMail{std::move(command), {}, "command"});
             kept.pass();
@@ -736,9 +730,10 @@ TEST_F(Loop, AWorldIsRefusedIfItsFileExists) {
             said = to_text(done->outcome.error());
         }
     };
-    SimulationLoop kept{
-        letters, demand,   executor, clock, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}, .reply = on_reply},
-        {},      &recorder};
+    SimulationLoop kept{{letters, demand, executor, clock},
+                        {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}, .reply = on_reply},
+                        {},
+                        &recorder};
     const auto apply = [&](simulation::Command command) {
         said.clear();
         letters.try_push(CommandMail{std::move(command), {}, "command"});

@@ -1,5 +1,4 @@
-// The commands of the simulation loop: applies them, constructs their worlds, and records and answers them.
-#include "server/runtime/simulation_loop.h"
+#include "server/runtime/command_handler.h"
 
 #include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
@@ -33,7 +32,7 @@ bool changes_something(const simulation::Command& command) {
 
 } // namespace
 
-void SimulationLoop::apply(CommandMail& mail) {
+void CommandHandler::handle(CommandMail& mail) {
     if (waits_for_a_build(mail.command)) {
         return kept_.push_back(std::move(mail));
     }
@@ -69,7 +68,7 @@ void SimulationLoop::apply(CommandMail& mail) {
         mail.command);
 }
 
-bool SimulationLoop::waits_for_a_build(const simulation::Command& command) const {
+bool CommandHandler::waits_for_a_build(const simulation::Command& command) const {
     return std::visit(
         [this](const auto& c) {
             bool waits = false;
@@ -84,14 +83,14 @@ bool SimulationLoop::waits_for_a_build(const simulation::Command& command) const
         command);
 }
 
-void SimulationLoop::take(const WorldBuilt& built) {
+void CommandHandler::take(const WorldBuilt& built) {
     builds_.take(built);
     for (CommandMail& command : std::exchange(kept_, {})) {
-        apply(command); // keeps it again if its world is still not free
+        handle(command); // keeps it again if its world is still not free
     }
 }
 
-const simulation::Entry* SimulationLoop::entry_of_command(const simulation::Command& command) const {
+const simulation::Entry* CommandHandler::entry_of_command(const simulation::Command& command) const {
     return std::visit(
         [this](const auto& c) -> const simulation::Entry* {
             if constexpr (requires { c.world; }) {
@@ -104,12 +103,12 @@ const simulation::Entry* SimulationLoop::entry_of_command(const simulation::Comm
         command);
 }
 
-std::optional<SimulationLoop::RunBefore> SimulationLoop::run_before(const simulation::Command& command) const {
+std::optional<CommandHandler::RunBefore> CommandHandler::run_before(const simulation::Command& command) const {
     const simulation::Entry* entry = entry_of_command(command);
     return entry ? std::optional{RunBefore{entry->run_id, entry->world.moment().tick}} : std::nullopt;
 }
 
-std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Command& command) const {
+std::optional<base::Refusal> CommandHandler::refusal_of(const simulation::Command& command) const {
     if (!recorder_ || !changes_something(command)) {
         return std::nullopt;
     }
@@ -119,7 +118,7 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
     }
     const auto* created = std::get_if<simulation::CreateWorld>(&command);
     const auto* forked = std::get_if<simulation::ForkWorld>(&command);
-    if (auto refused = entry && !forked ? file_faults_.refusal_of(entry->name) : std::nullopt) {
+    if (auto refused = entry && !forked ? storage_.refusal_of(entry->name) : std::nullopt) {
         return refused;
     }
     const std::string* name = created ? &created->name : forked ? &forked->name : nullptr;
@@ -127,7 +126,7 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
     return name && !laboratory_.find_damaged(*name) ? recorder_->refusal_of_place(*name) : std::nullopt;
 }
 
-base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
+base::Result<simulation::Applied> CommandHandler::apply(const simulation::Command& command) {
     if (const auto* deleted = std::get_if<simulation::DeleteWorld>(&command);
         deleted && recorder_ && laboratory_.find_damaged(deleted->world)) {
         if (auto moved = recorder_->move_aside(deleted->world); !moved) {
@@ -138,7 +137,7 @@ base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Comman
 }
 
 template <class C>
-void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>& before,
+void CommandHandler::construct(CommandMail& mail, const std::optional<RunBefore>& before,
                                base::Result<simulation::Construction> construction) {
     if (!construction) {
         return answer(mail, construction.error(), before);
@@ -187,7 +186,7 @@ void SimulationLoop::construct(CommandMail& mail, const std::optional<RunBefore>
     builds_.begin(std::move(order));
 }
 
-void SimulationLoop::fork(CommandMail& mail) {
+void CommandHandler::fork(CommandMail& mail) {
     const auto& command = std::get<simulation::ForkWorld>(mail.command);
     const simulation::Entry* original = entry_of_command(mail.command);
     if (!original && simulation::is_replay_name(command.world)) {
@@ -195,16 +194,16 @@ void SimulationLoop::fork(CommandMail& mail) {
     }
     const auto before = run_before(mail.command);
     if (original && command.at_generation && *command.at_generation != original->world.moment().generation) {
-        if (const auto run = run_of(*original); !run) {
+        if (const auto run = runs_.run_of(*original); !run) {
             return answer(mail, run.error(), before);
         }
         const std::string world = original->name;
-        return find_run({.world = world, .purpose = std::move(mail)});
+        return runs_.find({.world = world, .purpose = std::move(mail)});
     }
     construct<simulation::ForkWorld>(mail, before, laboratory_.construction(command));
 }
 
-void SimulationLoop::take(WorldBrought& brought) {
+void CommandHandler::take(WorldBrought& brought) {
     const RunBefore before{brought.run_id, 0};
     if (!*brought.world) {
         return answer(brought.fork, brought.world->error(), before);
@@ -218,17 +217,14 @@ void SimulationLoop::take(WorldBrought& brought) {
                                  .genes = simulation::genes_of((*brought.world)->parameters().active)});
 }
 
-void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
+void CommandHandler::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
                             const std::optional<RunBefore>& before, std::optional<run_file::RunBeginning> beginning) {
-    publish_events();
+    outputs_.publish_events(laboratory_);
     if (applied) {
-        show_change(applied->world);
+        changed_.push_back(applied->world);
     }
     CommandDone done = done_of(std::move(mail), applied);
     const bool deleted_damaged_world = applied && !before && effect_of(done.mail.command) == RunEffect::Ends;
-    if (deleted_damaged_world) {
-        count_damaged_worlds();
-    }
     if (recorder_ && applied && changes_something(done.mail.command) && !deleted_damaged_world) {
         record(std::move(done), before, std::move(beginning));
     } else {
@@ -236,7 +232,7 @@ void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Ap
     }
 }
 
-CommandDone SimulationLoop::done_of(CommandMail mail, const base::Result<simulation::Applied>& applied) const {
+CommandDone CommandHandler::done_of(CommandMail mail, const base::Result<simulation::Applied>& applied) const {
     CommandDone done{.mail = std::move(mail), .outcome = applied, .frame = {}};
     done.frame = protocol::frame_of(
         protocol::answer_of(done.mail.origin.request_id, done.mail.request_name, laboratory_, applied));
@@ -246,18 +242,18 @@ CommandDone SimulationLoop::done_of(CommandMail mail, const base::Result<simulat
     if (const auto entry = laboratory_.find(applied->world); entry && (*entry)->control.leased) {
         done.lease = (*entry)->control.lease;
     }
-    if (demand_.events_wanted()) {
+    if (tools_.demand.events_wanted()) {
         done.event = protocol::event_of(done.mail.command, *applied, done.mail.origin.client, laboratory_);
     }
     return done;
 }
 
-void SimulationLoop::record(CommandDone done, const std::optional<RunBefore>& before,
+void CommandHandler::record(CommandDone done, const std::optional<RunBefore>& before,
                             std::optional<run_file::RunBeginning> beginning) {
     const simulation::Applied applied = *done.outcome;
     const RunEffect effect = effect_of(done.mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
-    done.ticket = ++last_ticket_;
+    done.ticket = recorder_->next_ticket();
     recording::CommandRecord record{.tick = applied.tick,
                                     .control = effect == RunEffect::Ends ? simulation::RunControl{} : (*entry)->control,
                                     .origin = done.mail.origin,

@@ -1,5 +1,5 @@
 // A disk or a run file that cannot be written.
-#include "server/runtime/file_faults.h"
+#include "server/runtime/storage_watch.h"
 
 #include "tests/unit/runtime/loops_with_disk.h"
 
@@ -158,7 +158,7 @@ TEST_F(LoopsWithDisk, ASlowDiskIsReportedAfterAWhile) {
     ASSERT_TRUE(next);
     EXPECT_GT(*next, clock.now()) << "the loop may sleep";
     EXPECT_TRUE(reported.empty());
-    clock.advance(SimulationLoop::slow_disk_patience);
+    clock.advance(StorageWatch::slow_disk_patience);
     EXPECT_FALSE(loops.pass());
     EXPECT_EQ(state(), simulation::StorageState::Behind);
     EXPECT_FALSE(recorder.refusal());
