@@ -2,7 +2,7 @@
 // parts of files whose layout does not change.
 //
 // Numbers, and structs of numbers, are packed as they are in memory; strings and vectors as the number of their elements
-// and the elements; variants as the index of their alternative and its value; other structs field by field (Fields).
+// and the elements; variants as the index of their alternative and its value; other structs field by field.
 #pragma once
 
 #include "server/base/assert.h"
@@ -19,20 +19,21 @@
 
 namespace evod::base {
 
-/// The fields of a struct that is not packed as it is in memory. A specialisation declares them once, for both
-/// directions; `route` is const while it is packed:
+/// The fields of a struct that is not packed as it is in memory. The struct declares them once, for both directions, in a
+/// static function; `route` is const while it is packed:
 ///
-///     template <> struct Fields<Route> {
-///         static void visit(auto& route, auto&& each) { each(route.from); each(route.stops); }
-///     };
+///     static void visit(auto& route, auto&& each) { each(route.from, route.stops); }
+///
+/// For structs of other folders, a specialisation contains the function.
 template <class T>
-struct Fields;
+struct Fields {
+    static void visit(auto& value, auto&& each) { T::visit(value, each); }
+};
 
 /// std::string, std::vector, Column.
 template <class T>
 concept List = requires(T list) {
-    list.resize(0);
-    list.data();
+    list.push_back(typename T::value_type{});
 };
 
 class Packer {
@@ -50,8 +51,13 @@ class Packer {
                     add(element);
                 }
             }
+        } else if constexpr (requires { value.has_value(); }) { // std::optional
+            add(value.has_value());
+            if (value) {
+                add(*value);
+            }
         } else {
-            Fields<T>::visit(value, [this](const auto& field) { add(field); });
+            Fields<T>::visit(value, [this](const auto&... fields) { (add(fields), ...); });
         }
     }
     template <class... Alternatives>
@@ -65,17 +71,6 @@ class Packer {
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
     }
 
-    // SHIM
-    template <class T>
-    void add_values(std::span<T> values) {
-        add(values);
-    }
-    template <class Values>
-    void add_list(const Values& values) {
-        add(values);
-    }
-    void append(Packer other) { bytes_ += other.bytes_; }
-    // SHIMEND
     std::string take() { return std::exchange(bytes_, {}); }
 
   private:
@@ -105,8 +100,13 @@ class Unpacker {
                     read(element);
                 }
             }
+        } else if constexpr (requires { value.has_value(); }) { // std::optional
+            value.reset();
+            if (next<bool>()) {
+                read(value.emplace());
+            }
         } else {
-            Fields<T>::visit(value, [this](auto&& field) { read(field); });
+            Fields<T>::visit(value, [this](auto&&... fields) { (read(fields), ...); });
         }
     }
     template <class... Alternatives>
@@ -130,21 +130,6 @@ class Unpacker {
         read(value);
         return value;
     }
-    // SHIM
-    template <class T>
-    void next_values(std::span<T> values) {
-        read(values);
-    }
-    template <class T>
-    std::vector<T> next_list() {
-        return next<std::vector<T>>();
-    }
-    template <class Values>
-    void next_list(Values& values) {
-        read(values);
-    }
-    std::string next_text() { return next<std::string>(); }
-    // SHIMEND
     bool empty() const { return rest_.empty(); }
 
   private:

@@ -133,7 +133,7 @@ void add_server(Command& app) {
             }
             server->threads = shared.threads;
             server->processes = &shared.processes;
-            server->leader = shared.processes.size() > 1 ? &shared.leader : nullptr;
+            server->islands_maker = shared.maker;
             return run_server(*std::move(server));
         });
     });

@@ -296,8 +296,8 @@ bool Server::run() {
             }
         }
     }
-    if (options_.leader != nullptr) {
-        worlds.share(*options_.leader, *executor_);
+    if (options_.islands_maker != nullptr) {
+        worlds.share(*options_.islands_maker, *executor_);
     }
     begin_first_world();
     simulation_ = std::make_unique<runtime::SimulationThread>(

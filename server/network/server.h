@@ -48,9 +48,9 @@ struct ServerOptions {
     std::optional<HttpOptions> http; // nullopt: neither the browser viewer nor the metrics are served over HTTP
     std::optional<Replay> replay;    // a run file to serve as a replay, without live worlds and data folder
 
-    // The processes that share the worlds, and their leader; nullptr: there are none.
+    // The processes that share the worlds, and what divides the islands among them; nullptr: there are none.
     const runtime::Processes* processes = nullptr;
-    simulation::Leader* leader = nullptr;
+    simulation::IslandsMaker* islands_maker = nullptr;
 
     simulation::CreateWorld first_world; // created if no world has this name
     bool first_world_asked = false;      // false: first_world is created only if there is no world at all

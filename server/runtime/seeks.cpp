@@ -126,13 +126,12 @@ void Seeks::run(std::uint64_t number, base::Result<replay::SeekStart> start) {
 
 std::vector<Seeks::Begun> Seeks::take(const std::function<bool(const Begun&)>& is_wanted) {
     std::vector<Begun> taken;
-    std::erase_if(seeks_, [&](auto& item) {
-        if (!is_wanted(item.second)) {
-            return false;
+    for (auto seek = seeks_.begin(); seek != seeks_.end();) {
+        const auto here = seek++;
+        if (is_wanted(here->second)) {
+            taken.push_back(std::move(seeks_.extract(here).mapped()));
         }
-        taken.push_back(std::move(item.second));
-        return true;
-    });
+    }
     return taken;
 }
 

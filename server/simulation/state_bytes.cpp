@@ -22,53 +22,33 @@ Refusal refusal(const char* message) {
     return {.code = base::RefusalCode::DataLoss, .message = message, .violations = {}};
 }
 
-/// Calls visit(range, member) for every column, in order. `range` contains the elements; `member` returns the value of
-/// an element in this column.
+/// Calls visit(range, member) for every column, in order. `range` contains the elements; `member` is a member of theirs.
 template <class Island, class Visit>
 void for_each_column(Island& island, Visit&& visit) {
-    visit(
-        island.fate.lived_ticks, [](auto& value) -> auto& { return value; });
-    visit(
-        island.fate.cause, [](auto& value) -> auto& { return value; });
-    visit(
-        island.fate.food_eaten, [](auto& value) -> auto& { return value; });
-    visit(
-        island.fate.poison_eaten, [](auto& value) -> auto& { return value; });
+    visit(island.fate.lived_ticks, std::identity{});
+    visit(island.fate.cause, std::identity{});
+    visit(island.fate.food_eaten, std::identity{});
+    visit(island.fate.poison_eaten, std::identity{});
     const auto visit_bodies = [&](auto& bodies) {
-        visit(
-            bodies, [](auto& body) -> auto& { return body.x; });
-        visit(
-            bodies, [](auto& body) -> auto& { return body.y; });
-        visit(
-            bodies, [](auto& body) -> auto& { return body.velocity_x; });
-        visit(
-            bodies, [](auto& body) -> auto& { return body.velocity_y; });
+        using Body = std::remove_cvref_t<decltype(bodies.front())>;
+        visit(bodies, &Body::x);
+        visit(bodies, &Body::y);
+        visit(bodies, &Body::velocity_x);
+        visit(bodies, &Body::velocity_y);
     };
     visit_bodies(island.organisms);
-    visit(
-        island.organisms, [](auto& organism) -> auto& { return organism.health; });
-    visit(
-        island.headings, [](auto& heading) -> auto& { return heading; });
+    visit(island.organisms, &IslandState::Organism::health);
+    visit(island.headings, std::identity{});
     visit_bodies(island.crates);
     for (auto* items : {&island.food, &island.poison}) {
-        visit(
-            *items, [](auto& item) -> auto& { return item.x; });
-        visit(
-            *items, [](auto& item) -> auto& { return item.y; });
-        visit(
-            *items, [](auto& item) -> auto& { return item.due_tick; });
+        visit(*items, &Items::Item::x);
+        visit(*items, &Items::Item::y);
+        visit(*items, &Items::Item::due_tick);
     }
 }
 
-template <class Counts, class Visit>
-void for_each_count(Counts& counts, Visit&& visit) {
-    visit(counts.food_eaten);
-    visit(counts.poison_eaten);
-    visit(counts.starved_count);
-    visit(counts.poisoned_count);
-    visit(counts.too_fast_count);
-    visit(counts.speed_limit_count);
-}
+// Counts are written as they are in memory.
+static_assert(sizeof(IslandCounts) == 40);
 
 /// The flags in the first byte of a state.
 constexpr std::uint8_t over_flag = 1, placed_flag = 2, given_flag = 4;
@@ -77,13 +57,6 @@ constexpr std::uint8_t over_flag = 1, placed_flag = 2, given_flag = 4;
 struct PlacedCounts {
     std::uint32_t organisms = 0, food = 0, poison = 0;
 };
-
-template <class Counts, class Visit>
-void for_each_placed_count(Counts& counts, Visit&& visit) {
-    visit(counts.organisms);
-    visit(counts.food);
-    visit(counts.poison);
-}
 
 bool has_placed(const PlacedCounts& counts) {
     return counts.organisms > 0 || counts.food > 0 || counts.poison > 0;
@@ -132,9 +105,7 @@ std::size_t bytes_of(std::span<const PlacedCounts> placed, std::span<const Islan
 std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
     std::size_t bytes = 1;
     for (const IslandShape& shape : shapes) {
-        IslandCounts counts;
-        for_each_count(counts, [&](const auto& count) { bytes += sizeof(count); });
-        bytes += shape.organisms * std::size_t{13};
+        bytes += sizeof(IslandCounts) + shape.organisms * std::size_t{13};
         if (shape.has_bodies) {
             bytes += shape.organisms * std::size_t{shape.has_headings ? 24u : 20u} + shape.crates * std::size_t{16} +
                      (std::size_t{shape.food} + shape.poison) * 12;
@@ -223,12 +194,12 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
     const Layout layout = layout_of(state);
     base::Packer bytes;
     const auto write_column = [&](const auto& range, auto&& part) {
-        using T = std::remove_cvref_t<decltype(part(range.front()))>;
+        using T = std::remove_cvref_t<decltype(std::invoke(part, range.front()))>;
         std::array<T, 4096> values;
         for (std::size_t begin = 0; begin < range.size(); begin += values.size()) {
             const std::size_t count = std::min(values.size(), range.size() - begin);
             for (std::size_t i = 0; i < count; ++i) {
-                values[i] = part(range[begin + i]);
+                values[i] = std::invoke(part, range[begin + i]);
             }
             bytes.add(std::span<const T>{values}.first(count));
             write(bytes.take());
@@ -236,9 +207,7 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
     };
     bytes.add(static_cast<std::uint8_t>((layout.over ? over_flag : 0) | (layout.placed.empty() ? 0 : placed_flag) |
                                         (layout.given_counts.empty() ? 0 : given_flag)));
-    for (const PlacedCounts& counts : layout.placed) {
-        for_each_placed_count(counts, [&](const auto& count) { bytes.add(count); });
-    }
+    bytes.add(std::span{layout.placed});
     for (const IslandState& island : state.islands) {
         for (const IslandState::Placed& organism : island.placed) {
             bytes.add(std::span{organism.genes});
@@ -250,8 +219,8 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
         write_column(given, std::identity{});
     }
     for (const IslandState& island : state.islands) {
-        for_each_count(island.counts, [&](const auto& count) { bytes.add(count); });
-        for_each_column(island, [&](const auto& range, auto&& part) { write_column(range, part); });
+        bytes.add(island.counts);
+        for_each_column(island, write_column);
     }
     for (const GenerationStatistics& statistics : state.ended) {
         for_each_statistic(statistics, [&]<class T>(const T& number) {
@@ -291,7 +260,7 @@ Result<void> read_state(std::string_view bytes, std::span<const IslandShape> sha
         return refusal("its size differs from that of a state of this world");
     }
     for (PlacedCounts& counts : placed) {
-        for_each_placed_count(counts, [&](auto& count) { columns.read(count); });
+        columns.read(counts);
         if (counts.organisms > placed_max || counts.food > placed_max || counts.poison > placed_max) {
             return refusal("it has more placed items or organisms than a world can have");
         }
@@ -334,10 +303,10 @@ Result<void> read_state(std::string_view bytes, std::span<const IslandShape> sha
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         IslandState& island = state.islands[i];
         resize(island, whole[i]);
-        for_each_count(island.counts, [&](auto& count) { columns.read(count); });
+        columns.read(island.counts);
         for_each_column(island, [&](auto& range, auto&& part) {
             for (auto& element : range) {
-                columns.read(part(element));
+                columns.read(std::invoke(part, element));
             }
         });
     }

@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     base::InlineExecutor executor;
-    simulation::World world = first;
+    simulation::World world = first.copy(executor);
     if (const auto restored = world.restore(state, executor); !restored) {
         if (restored.error().message.empty() || world.hash() != first.hash()) {
             std::abort();

@@ -38,7 +38,7 @@ class Server {
     static base::Result<std::unique_ptr<Server>> open(const std::string& folder,
                                                       const run_file::RunFile::Options& options,
                                                       std::chrono::microseconds tick_takes, base::Executor& executor,
-                                                      simulation::Leader* leader);
+                                                      simulation::IslandsMaker* maker);
 
     const simulation::Laboratory& laboratory() const { return loop_->laboratory(); }
     const simulation::Entry* find(const std::string& name) const;
@@ -63,7 +63,7 @@ class Server {
 
   private:
     Server(std::unique_ptr<replay::Archive> archive, std::chrono::microseconds tick_takes, base::Executor& executor,
-           simulation::Leader* leader);
+           simulation::IslandsMaker* maker);
     void on_reply(runtime::Reply reply);
     bool is_answered() const;
 
