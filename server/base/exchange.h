@@ -37,20 +37,4 @@ class Exchange {
     virtual std::string broadcast(std::string from_first) = 0;
 };
 
-/// The exchange of a process that simulates its worlds alone.
-class NoExchange final : public Exchange {
-  public:
-    std::uint32_t rank() const override { return 0; }
-    std::uint32_t size() const override { return 1; }
-    std::vector<std::string> gather(std::string part) override { return {std::move(part)}; }
-    std::vector<std::string> swap(std::vector<std::string> parts) override { return parts; }
-    std::string broadcast(std::string from_first) override { return from_first; }
-};
-
-/// Returns the exchange of worlds that no other process shares.
-inline Exchange& no_exchange() {
-    static NoExchange alone; // has no state
-    return alone;
-}
-
 } // namespace evod::base

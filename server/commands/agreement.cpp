@@ -3,6 +3,7 @@
 #include "server/base/packing.h"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace evod::commands {
@@ -14,16 +15,14 @@ base::Result<void> agree(const base::Result<std::string>& mine, runtime::Process
     base::Packer packer;
     packer.add(mine.has_value());
     packer.add(mine ? base::RefusalCode::InvalidArgument : mine.error().code);
-    const std::string text = mine ? *mine : base::to_text(mine.error());
-    packer.add_list(std::vector<char>(text.begin(), text.end()));
+    packer.add(mine ? *mine : base::to_text(mine.error()));
     const std::vector<std::string> all = processes.gather(packer.take());
     std::string first;
     for (std::uint32_t rank = 0; rank < processes.size(); ++rank) {
         base::Unpacker unpacker{all[rank]};
         const bool sound = unpacker.next<bool>();
         const auto code = unpacker.next<base::RefusalCode>();
-        const auto bytes = unpacker.next_list<char>();
-        const std::string there{bytes.begin(), bytes.end()};
+        const auto there = unpacker.next<std::string>();
         if (!sound) {
             return refusal(code, processes.name_of(rank) + ": " + there);
         }

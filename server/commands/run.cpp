@@ -368,12 +368,12 @@ struct Simulation {
 
 /// Creates the world of a run, or continues the stored one.
 simulation::World make_world(const Beginning& beginning, const Recording& recording, base::Executor& executor,
-                             simulation::Leader& leader) {
+                             simulation::IslandsMaker* maker) {
     const auto& [experiment, first_population] = beginning;
     if (recording && recording->stored() == experiments::Stored::Part) {
-        return recording->continued_world(experiment, first_population, executor, leader);
+        return recording->continued_world(experiment, first_population, executor, maker);
     }
-    return {experiment.parameters, *experiment.seed, first_population, experiment.schedule, &leader};
+    return {experiment.parameters, *experiment.seed, first_population, experiment.schedule, maker};
 }
 
 base::Result<void> fewer_processes_than_islands(std::uint32_t processes, std::uint32_t islands) {
@@ -416,7 +416,7 @@ int run(const RunOptions& options, const SharedWork& shared) {
     ComputationTime cost;
     const auto start = Clock::now();
     const std::unique_ptr<base::Executor> executor = runtime::make_executor(shared.threads);
-    Simulation simulation{make_world(*beginning, *recording, *executor, shared.leader), *executor, recording->get(),
+    Simulation simulation{make_world(*beginning, *recording, *executor, shared.maker), *executor, recording->get(),
                           output, cost};
     cost.start_s = seconds_since(start);
     if (*recording) {

@@ -140,10 +140,9 @@ void add_server(Command& app) {
         begin_log(options);
         return share_worlds("server", options.sharing, true, [&options](const SharedWork& shared) {
             log_processes(shared);
-            const bool is_alone = shared.processes.size() == 1;
-            auto server = server_options(
-                options,
-                is_alone ? std::nullopt : std::optional{network::SharingProcesses{shared.processes, shared.leader}});
+            auto server = server_options(options, shared.maker == nullptr ? std::nullopt
+                                                                          : std::optional{network::SharingProcesses{
+                                                                                shared.processes, *shared.maker}});
             if (server) {
                 server->threads = shared.threads;
             }

@@ -5,6 +5,7 @@
 #include "server/commands/common_options.h"
 #include "server/run_file/build.h"
 #include "server/runtime/worker_pool.h"
+#include "server/simulation/shared/leader.h"
 
 #include <algorithm>
 #include <chrono>
@@ -39,15 +40,21 @@ int share_worlds(const std::string& command, const SharingOptions& options, bool
     }
     const std::size_t threads =
         options.threads.value_or(std::max<std::size_t>(default_thread_count() / processes.on_this_machine(), 1));
+    if (processes.size() == 1) {
+        return work({processes, nullptr, threads});
+    }
     if (is_first) {
-        simulation::Leader leader{processes};
-        return work({processes, leader, threads});
+        int status = 0;
+        simulation::shared::lead(processes, [&](simulation::shared::Leader& leader) {
+            status = work({processes, &leader, threads});
+        });
+        return status;
     }
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         std::signal(signal, SIG_IGN);
     }
     const std::unique_ptr<base::Executor> executor = runtime::make_executor(threads);
-    simulation::follow(processes, *executor);
+    simulation::shared::follow(processes, *executor);
     return 0;
 }
 

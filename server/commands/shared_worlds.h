@@ -5,7 +5,7 @@
 #pragma once
 
 #include "server/runtime/processes.h"
-#include "server/simulation/sharing.h"
+#include "server/simulation/islands.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -29,8 +29,8 @@ void add_sharing_options(command_line::Command& command, SharingOptions& options
 /// What rank 0 works with. A process that mpirun has not started is rank 0 of one.
 struct SharedWork {
     runtime::Processes& processes;
-    simulation::Leader& leader;
-    std::size_t threads; // of this process
+    simulation::IslandsMaker* maker; // divides the islands of worlds among the processes; nullptr if there is only one
+    std::size_t threads;             // of this process
 };
 
 /// Joins the other processes. On rank 0 calls work(), on the others simulates islands for it until it returns. There,

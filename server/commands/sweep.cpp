@@ -176,11 +176,9 @@ Result<Executed> add_up(const Result<std::size_t>& made, double busy_s, runtime:
     if (auto agreed = agree(made ? Result<std::string>{""} : made.error(), processes); !agreed) {
         return agreed.error();
     }
-    base::Packer packer;
-    packer.add(Executed{.runs = *made, .busy_s = busy_s});
     Executed sum;
-    for (const std::string& part : processes.gather(packer.take())) {
-        const auto there = base::Unpacker{part}.next<Executed>();
+    for (const std::string& part : processes.gather(base::pack(Executed{.runs = *made, .busy_s = busy_s}))) {
+        const auto there = base::unpack<Executed>(part);
         sum.runs += there.runs;
         sum.busy_s += there.busy_s;
     }
@@ -241,9 +239,7 @@ std::vector<std::size_t> run_numbers(const Sweep& sweep, std::optional<std::size
 
 /// Returns what rank 0 passes, in all processes.
 std::vector<std::size_t> of_rank_0(const std::vector<std::size_t>& runs, runtime::Processes& processes) {
-    base::Packer packer;
-    packer.add_list(runs);
-    return base::Unpacker{processes.gather(packer.take()).front()}.next_list<std::size_t>();
+    return base::unpack<std::vector<std::size_t>>(processes.gather(base::pack(runs)).front());
 }
 
 /// Executes the runs that are still missing. Returns the exit status.

@@ -155,17 +155,16 @@ std::optional<base::Seed> RunRecording::seed() const {
 
 simulation::World RunRecording::continued_world(const parameters::Experiment& experiment,
                                                 simulation::FirstPopulation first_population, base::Executor& executor,
-                                                simulation::Leader& leader) {
+                                                simulation::IslandsMaker* maker) {
     EVOD_ASSERT(stored_ == Stored::Part);
     return {seed_,
             begun_.opening,
-            std::exchange(begun_.born, {}),
+            {std::exchange(begun_.born, {}), std::exchange(begun_.founders, {})},
             {},
             executor,
             std::move(first_population),
-            std::exchange(begun_.founders, {}),
             experiment.schedule,
-            &leader};
+            maker};
 }
 
 Result<void>

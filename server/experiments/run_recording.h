@@ -43,10 +43,10 @@ class RunRecording {
     std::uint64_t continues_at() const { return begun_.opening.moment.generation; }
     /// The world at the beginning of that generation; called once. Its history is empty.
     ///
-    /// leader  the number of processes that share the world may differ from that of the interrupted run.
+    /// maker  as for a new world. The number of processes may differ from that of the interrupted run.
     simulation::World continued_world(const parameters::Experiment& experiment,
                                       simulation::FirstPopulation first_population, base::Executor& executor,
-                                      simulation::Leader& leader);
+                                      simulation::IslandsMaker* maker);
     /// Calls use(statistics) for every island of every stored generation before the one at which the run continues; of a
     /// whole run, for all generations.
     base::Result<void>

@@ -95,7 +95,7 @@ constexpr LimitRow table[] = {
      "the server evicts keys with a single command first, then the least recently used keys. It remembers the highest "
      "`request_id` of the last 100,000 evicted keys, and refuses their commands up to that id with "
      "`FAILED_PRECONDITION`"},
-    {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::World::history_generations_kept,
+    {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::history_generations_kept,
      "generations per world whose statistics the server keeps; with more than 13 islands, as many as fit into 131,072 "
      "rows",
      "the server drops the oldest generation"},

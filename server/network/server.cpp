@@ -161,7 +161,7 @@ bool Server::run() {
         }
     }
     if (const auto* live = std::get_if<LiveWorlds>(&options_.worlds); live != nullptr && live->processes) {
-        worlds.share(live->processes->leader, *executor_);
+        worlds.share(live->processes->islands_maker, *executor_);
     }
     if (first_world_) {
         first_world_->begin([this](v1::Request request) { dispatcher_.commands().handle_own(std::move(request)); });

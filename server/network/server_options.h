@@ -10,7 +10,7 @@
 #include "server/run_file/run_file.h"
 #include "server/runtime/processes.h"
 #include "server/simulation/commands.h"
-#include "server/simulation/sharing.h"
+#include "server/simulation/islands.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -72,7 +72,7 @@ struct StorageOptions {
 /// The processes that simulate worlds together; this is the one with rank 0.
 struct SharingProcesses {
     std::reference_wrapper<const runtime::Processes> all;
-    std::reference_wrapper<simulation::Leader> leader;
+    std::reference_wrapper<simulation::IslandsMaker> islands_maker;
 };
 
 struct LiveWorlds {

@@ -102,7 +102,7 @@ base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& labora
     *statistics.mutable_world() = to_proto(**entry);
     if (world.has_bodies()) {
         std::uint32_t island = 0;
-        for (const simulation::LiveStatistics& live : world.live_statistics()) {
+        for (const simulation::LiveStatistics& live : world.islands().live_statistics()) {
             *statistics.add_live() = to_proto(live, island++);
         }
     }
@@ -148,8 +148,10 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
     const std::uint64_t first = query.has_first_generation() ? query.first_generation() : 0;
     const std::uint64_t last =
         query.has_last_generation() ? query.last_generation() : std::numeric_limits<std::uint64_t>::max();
-    answer.begins_late = history.size() >= world.history_generations_kept_here() &&
-                         std::max<std::uint64_t>(first, 1) < history.front().front().generation;
+    answer.begins_late =
+        history.size() >= simulation::history_generations_kept_of(world.island_count(),
+                                                                  evolution::gene_count(world.parameters().active)) &&
+        std::max<std::uint64_t>(first, 1) < history.front().front().generation;
     auto generation = std::partition_point(history.begin(), history.end(),
                                            [first](const auto& rows) { return rows.front().generation < first; });
     std::size_t count = 0;
@@ -229,7 +231,7 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
     if (!born.parents.empty()) {
         answer.parents.assign(born.parents.data() + ids.begin, born.parents.data() + ids.end);
     }
-    if (const auto founders = world.founders(island); !founders.empty()) {
+    if (const auto founders = world.islands().founders(island.index()); !founders.empty()) {
         answer.founders.assign(founders.begin() + ids.begin, founders.begin() + ids.end);
     }
     return answer;

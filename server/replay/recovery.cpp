@@ -35,7 +35,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     }
     const std::uint64_t last_tick = file.last_tick();
     auto rerun = Rerun::before(file, file.generations().at_tick(last_tick), last_tick, *changes,
-                               simulation::World::history_generations_kept, executor);
+                               simulation::history_generations_kept, executor);
     if (!rerun) {
         return rerun.error();
     }
@@ -69,7 +69,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
 
 Result<void> check_beginning(run_file::RunFile& file, const base::StateHash& hash, base::Executor& executor) {
     const auto begun = Rerun::begun_at(file, file.identity().first_generation, nullptr, {},
-                                       simulation::World::history_generations_kept, executor);
+                                       simulation::history_generations_kept, executor);
     if (!begun) {
         return begun.error();
     }

@@ -156,7 +156,7 @@ Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base:
         return changes.error();
     }
     auto rerun = begun_at(file, file.retention().at_or_before(generation), nullptr, *changes,
-                          simulation::World::history_generations_kept, executor);
+                          simulation::history_generations_kept, executor);
     if (!rerun && rerun.error().code == RefusalCode::NotFound) {
         return Refusal{.code = RefusalCode::NotFound,
                        .message = file.path() + " has no generation " + std::to_string(generation),
@@ -192,7 +192,7 @@ Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t tick, base::E
                        .violations = {},
                        .reason = base::Reason::MomentNotFound};
     }
-    return before(file, file.generations().at_tick(tick), tick, simulation::World::history_generations_kept, executor);
+    return before(file, file.generations().at_tick(tick), tick, simulation::history_generations_kept, executor);
 }
 
 Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
@@ -246,7 +246,7 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
     }
     const std::size_t islands = (*begun)->born.size();
     auto history = file.generations().history(
-        generation, std::min(history_count, simulation::World::history_generations_kept_of(
+        generation, std::min(history_count, simulation::history_generations_kept_of(
                                                 std::max<std::size_t>(islands, 1),
                                                 evolution::gene_count((*begun)->opening.parameters.active))));
     if (!history) {
@@ -262,18 +262,13 @@ Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
 
 Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
                           const run_file::StoredCheckpoint* checkpoint, std::span<const WorldChange> changes,
-                          simulation::World::History history, base::Executor& executor, simulation::Changes past) {
+                          simulation::History history, base::Executor& executor, simulation::Changes past) {
     if (const char* part = impossible_part_of(begun)) {
         return damaged(file, "generation " + std::to_string(begun.opening.moment.generation) +
                                  " begins with an impossible " + part);
     }
-    simulation::World world{file.identity().seed,
-                            begun.opening,
-                            begun.born,
-                            std::move(history),
-                            executor,
-                            file.identity().first_population,
-                            begun.founders,
+    simulation::World world{file.identity().seed,    begun.opening, {begun.born, begun.founders},
+                            std::move(history),      executor,      file.identity().first_population,
                             file.identity().schedule};
     world.set_past_changes(std::move(past));
     const std::uint64_t last_entry = last_entry_before(file, begun, checkpoint, changes);
@@ -331,7 +326,7 @@ Result<void> ComingChanges::restore_planned_changes(const std::string& path, std
             (change.at->tick && *change.at->tick <= change.tick)) {
             return impossible_change(path, change);
         }
-        (void)world.add_planned({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
+        (void)world.plan({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
     }
     world.drop_due_changes();
     return {};

@@ -120,7 +120,7 @@ class Rerun {
     /// past        what the world then reports as its past changes.
     static base::Result<Rerun> from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
                                     const run_file::StoredCheckpoint* checkpoint, std::span<const WorldChange> changes,
-                                    simulation::World::History history, base::Executor& executor,
+                                    simulation::History history, base::Executor& executor,
                                     simulation::Changes past = {});
 
     const simulation::World& world() const { return world_; }

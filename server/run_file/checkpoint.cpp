@@ -1,199 +1,34 @@
 #include "server/run_file/checkpoint.h"
 
 #include "server/base/assert.h"
+#include "server/simulation/state_bytes.h"
 
 #include <zstd.h>
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
-#include <functional>
 #include <memory>
-#include <vector>
+#include <utility>
 
 namespace evod::run_file {
 namespace {
 
-using base::Refusal;
-using base::Result;
-using simulation::GenerationStatistics;
-using simulation::IslandShape;
-using simulation::IslandState;
-using simulation::Items;
-
-static_assert(std::endian::native == std::endian::little, "columns are written as they are in memory");
-
 constexpr int compression_level = 1; // higher levels take much longer and save little: most values are positions
 
-Refusal refusal(const char* message) {
-    return {.code = base::RefusalCode::DataLoss, .message = message, .violations = {}};
-}
-
-/// Calls visit(range, member) for every column, in order. `range` contains the elements; `member` returns the value of
-/// an element in this column.
-template <class Island, class Visit>
-void for_each_column(Island& island, Visit&& visit) {
-    visit(
-        island.fate.lived_ticks, [](auto& value) -> auto& { return value; });
-    visit(
-        island.fate.cause, [](auto& value) -> auto& { return value; });
-    visit(
-        island.fate.food_eaten, [](auto& value) -> auto& { return value; });
-    visit(
-        island.fate.poison_eaten, [](auto& value) -> auto& { return value; });
-    const auto visit_bodies = [&](auto& bodies) {
-        visit(
-            bodies, [](auto& body) -> auto& { return body.x; });
-        visit(
-            bodies, [](auto& body) -> auto& { return body.y; });
-        visit(
-            bodies, [](auto& body) -> auto& { return body.velocity_x; });
-        visit(
-            bodies, [](auto& body) -> auto& { return body.velocity_y; });
-    };
-    visit_bodies(island.organisms);
-    visit(
-        island.organisms, [](auto& organism) -> auto& { return organism.health; });
-    visit(
-        island.headings, [](auto& heading) -> auto& { return heading; });
-    visit_bodies(island.crates);
-    for (auto* items : {&island.food, &island.poison}) {
-        visit(
-            *items, [](auto& item) -> auto& { return item.x; });
-        visit(
-            *items, [](auto& item) -> auto& { return item.y; });
-        visit(
-            *items, [](auto& item) -> auto& { return item.due_tick; });
-    }
-}
-
-template <class Counts, class Visit>
-void for_each_count(Counts& counts, Visit&& visit) {
-    visit(counts.food_eaten);
-    visit(counts.poison_eaten);
-    visit(counts.starved_count);
-    visit(counts.poisoned_count);
-    visit(counts.too_fast_count);
-    visit(counts.speed_limit_count);
-}
-
-/// The flags in the first byte of a state.
-constexpr std::uint8_t over_flag = 1, placed_flag = 2, given_flag = 4;
-
-/// The numbers of entities that were placed on an island.
-struct PlacedCounts {
-    std::uint32_t organisms = 0, food = 0, poison = 0;
-};
-
-template <class Counts, class Visit>
-void for_each_placed_count(Counts& counts, Visit&& visit) {
-    visit(counts.organisms);
-    visit(counts.food);
-    visit(counts.poison);
-}
-
-bool has_placed(const PlacedCounts& counts) {
-    return counts.organisms > 0 || counts.food > 0 || counts.poison > 0;
-}
-
-/// Returns the shapes of islands on which entities were placed.
-std::vector<IslandShape> with_placed(std::span<const IslandShape> shapes, std::span<const PlacedCounts> placed) {
-    std::vector<IslandShape> whole{shapes.begin(), shapes.end()};
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        whole[i].organisms += placed[i].organisms;
-        whole[i].food += placed[i].food;
-        whole[i].poison += placed[i].poison;
-    }
-    return whole;
-}
-
-/// Calls visit(number) for every number of the statistics.
-template <class Statistics, class Visit>
-void for_each_statistic(Statistics& statistics, const Visit& visit) {
-    simulation::for_each_number(statistics, [&](const std::string&, auto& number) { visit(number); });
-    for (auto& gene : statistics.genes) {
-        visit(gene.mean);
-        visit(gene.deviation);
-        visit(gene.min);
-        visit(gene.max);
-    }
-}
-
-std::size_t bytes_of_statistics(std::size_t gene_count) {
-    std::size_t bytes = 0;
-    const GenerationStatistics statistics{.genes = std::vector<simulation::GeneStatistics>(gene_count)};
-    for_each_statistic(statistics, [&](const auto&) { bytes += 8; });
-    return bytes;
-}
-
-/// The size in bytes of the numbers of placed entities, and of the genes and ticks of placed organisms.
-std::size_t bytes_of(std::span<const PlacedCounts> placed, std::span<const IslandShape> shapes) {
-    std::size_t bytes = 0;
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        bytes += sizeof placed[i] + placed[i].organisms * (shapes[i].genes * sizeof(float) + sizeof(std::uint32_t));
-    }
-    return bytes;
-}
-
-/// The size of the uncompressed state in bytes, including its first byte, without bytes_of(placed).
-std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
-    std::size_t bytes = 1;
-    for (const IslandShape& shape : shapes) {
-        simulation::IslandCounts counts;
-        for_each_count(counts, [&](const auto& count) { bytes += sizeof(count); });
-        bytes += shape.organisms * std::size_t{13};
-        if (shape.has_bodies) {
-            bytes += shape.organisms * std::size_t{shape.has_headings ? 24u : 20u} + shape.crates * std::size_t{16} +
-                     (std::size_t{shape.food} + shape.poison) * 12;
-        }
-        bytes += over ? bytes_of_statistics(shape.genes) : 0;
-    }
-    return bytes;
-}
-
-/// The size in bytes of the fitness from clients, and of its counts.
-std::size_t bytes_of(std::span<const std::uint32_t> given_counts) {
-    std::size_t bytes = given_counts.size_bytes();
-    for (const std::uint32_t count : given_counts) {
-        bytes += std::size_t{count} * sizeof(double);
-    }
-    return bytes;
-}
-
-class Packer {
+class Compressor {
   public:
-    Packer() : context_{ZSTD_createCCtx(), ZSTD_freeCCtx} {
+    Compressor() : context_{ZSTD_createCCtx(), ZSTD_freeCCtx} {
         EVOD_ASSERT(context_ != nullptr);
         ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, compression_level);
     }
     /// Makes zstd store the uncompressed size, so that a reader can check it before it allocates memory.
     void expect(std::size_t bytes) { ZSTD_CCtx_setPledgedSrcSize(context_.get(), bytes); }
 
-    template <class T>
-    void value(const T& value) {
-        put(&value, sizeof value);
-    }
-    template <class Range, class Part>
-    void column(const Range& range, Part&& part) {
-        using T = std::remove_cvref_t<decltype(part(range.front()))>;
-        std::array<T, 4096> values;
-        for (std::size_t begin = 0; begin < range.size(); begin += values.size()) {
-            const std::size_t count = std::min(values.size(), range.size() - begin);
-            for (std::size_t i = 0; i < count; ++i) {
-                values[i] = part(range[begin + i]);
-            }
-            put(values.data(), count * sizeof(T));
-        }
-    }
+    void add(std::string_view bytes) { run({bytes.data(), bytes.size(), 0}, ZSTD_e_continue); }
     std::string finish() && {
         run({nullptr, 0, 0}, ZSTD_e_end);
         return std::move(packed_);
     }
 
   private:
-    void put(const void* bytes, std::size_t count) { run({bytes, count, 0}, ZSTD_e_continue); }
-
     void run(ZSTD_inBuffer in, ZSTD_EndDirective directive) {
         for (;;) {
             if (used_ == packed_.size()) {
@@ -217,108 +52,13 @@ class Packer {
     std::size_t used_ = 0; // bytes used in packed_
 };
 
-/// Reads the values in `bytes` one after another. The caller has already checked the size.
-class Columns {
-  public:
-    explicit Columns(std::string_view bytes) : bytes_{bytes} {}
-
-    template <class T>
-    void value(T& value) {
-        EVOD_ASSERT(bytes_.size() >= sizeof value);
-        std::memcpy(&value, bytes_.data(), sizeof value);
-        bytes_.remove_prefix(sizeof value);
-    }
-    bool empty() const { return bytes_.empty(); }
-
-  private:
-    std::string_view bytes_;
-};
-
-void resize(IslandState& island, const IslandShape& shape) {
-    island.fate.begin_generation(shape.organisms);
-    if (!shape.has_bodies) {
-        return;
-    }
-    island.organisms.resize(shape.organisms);
-    island.headings.resize(shape.has_headings ? shape.organisms : 0);
-    island.crates.resize(shape.crates);
-    island.food.resize(shape.food);
-    island.poison.resize(shape.poison);
-}
-
-/// The number of genes of each organism, if the state contains genes or their statistics.
-std::uint32_t gene_count_of(const simulation::WorldState& state) {
-    if (!state.ended.empty()) {
-        return static_cast<std::uint32_t>(state.ended.front().genes.size());
-    }
-    for (const IslandState& island : state.islands) {
-        if (!island.placed.empty()) {
-            return static_cast<std::uint32_t>(island.placed.front().genes.size());
-        }
-    }
-    return 0;
-}
-
 } // namespace
 
 std::string pack(const simulation::WorldState& state) {
-    const std::uint32_t gene_count = gene_count_of(state);
-    // The shapes include the placed entities.
-    std::vector<IslandShape> shapes;
-    std::vector<PlacedCounts> placed;
-    for (const IslandState& island : state.islands) {
-        shapes.push_back({.genes = gene_count,
-                          .organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
-                          .has_bodies = !island.organisms.empty(),
-                          .has_headings = !island.headings.empty(),
-                          .crates = static_cast<std::uint32_t>(island.crates.size()),
-                          .food = static_cast<std::uint32_t>(island.food.size()),
-                          .poison = static_cast<std::uint32_t>(island.poison.size())});
-        placed.push_back({.organisms = static_cast<std::uint32_t>(island.placed.size()),
-                          .food = island.placed_food,
-                          .poison = island.placed_poison});
-    }
-    const bool over = !state.ended.empty();
-    if (std::ranges::none_of(placed, has_placed)) {
-        placed.clear();
-    }
-    std::vector<std::uint32_t> given_counts;
-    for (const std::vector<double>& given : state.given_fitness) {
-        given_counts.push_back(static_cast<std::uint32_t>(given.size()));
-    }
-    Packer packer;
-    packer.expect(bytes_of(shapes, over) + bytes_of(placed, shapes) + bytes_of(given_counts));
-    packer.value(static_cast<std::uint8_t>((over ? over_flag : 0) | (placed.empty() ? 0 : placed_flag) |
-                                           (given_counts.empty() ? 0 : given_flag)));
-    for (const PlacedCounts& counts : placed) {
-        for_each_placed_count(counts, [&](const auto& count) { packer.value(count); });
-    }
-    for (const IslandState& island : state.islands) {
-        for (const IslandState::Placed& organism : island.placed) {
-            for (const float gene : organism.genes) {
-                packer.value(gene);
-            }
-            packer.value(organism.tick);
-        }
-    }
-    packer.column(given_counts, std::identity{});
-    for (const std::vector<double>& given : state.given_fitness) {
-        packer.column(given, std::identity{});
-    }
-    for (const IslandState& island : state.islands) {
-        for_each_count(island.counts, [&](const auto& count) { packer.value(count); });
-        for_each_column(island, [&](const auto& range, auto&& part) { packer.column(range, part); });
-    }
-    for (const GenerationStatistics& statistics : state.ended) {
-        for_each_statistic(statistics, [&]<class T>(const T& number) {
-            if constexpr (std::is_floating_point_v<T>) {
-                packer.value(double{number});
-            } else {
-                packer.value(static_cast<std::uint64_t>(number));
-            }
-        });
-    }
-    return std::move(packer).finish();
+    Compressor compressor;
+    compressor.expect(bytes_of_state(state));
+    write_state(state, [&](std::string_view bytes) { compressor.add(bytes); });
+    return std::move(compressor).finish();
 }
 
 StoredCheckpoint pack(const Checkpoint& checkpoint) {
@@ -329,110 +69,20 @@ StoredCheckpoint pack(const Checkpoint& checkpoint) {
             .state = pack(checkpoint.state)};
 }
 
-Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes, simulation::WorldState& state) {
+base::Result<void> unpack(std::string_view packed, std::span<const simulation::IslandShape> shapes,
+                          simulation::WorldState& state) {
     // The size is checked before any memory is allocated.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
-    const PlacedCounts most{simulation::placed_max, simulation::placed_max, simulation::placed_max};
-    const std::vector<PlacedCounts> most_placed(shapes.size(), most);
-    std::vector<std::uint32_t> most_given;
-    for (const IslandShape& shape : with_placed(shapes, most_placed)) {
-        most_given.push_back(shape.organisms);
-    }
-    if (bytes < bytes_of(shapes, false) || bytes > bytes_of(with_placed(shapes, most_placed), true) +
-                                                       bytes_of(most_placed, shapes) + bytes_of(most_given)) {
-        return refusal("its size differs from that of a state of this world");
+    if (auto checked = simulation::check_state_bytes(bytes, shapes); !checked) {
+        return checked;
     }
     std::string columns(bytes, '\0');
     const std::size_t unpacked = ZSTD_decompress(columns.data(), columns.size(), packed.data(), packed.size());
     if (ZSTD_isError(unpacked) || unpacked != columns.size()) {
-        return refusal("it cannot be decompressed");
+        return base::Refusal{
+            .code = base::RefusalCode::DataLoss, .message = "it cannot be decompressed", .violations = {}};
     }
-    return read_columns(columns, shapes, state);
-}
-
-Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> shapes, simulation::WorldState& state) {
-    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > (over_flag | placed_flag | given_flag)) {
-        return refusal("its first byte is not 0 to 7");
-    }
-    const bool over = (static_cast<std::uint8_t>(bytes.front()) & over_flag) != 0;
-    const bool has_counts = (static_cast<std::uint8_t>(bytes.front()) & placed_flag) != 0;
-    std::vector<PlacedCounts> placed(has_counts ? shapes.size() : 0);
-    Columns columns{bytes.substr(1)};
-    if (bytes.size() < 1 + placed.size() * sizeof(PlacedCounts)) {
-        return refusal("its size differs from that of a state of this world");
-    }
-    for (PlacedCounts& counts : placed) {
-        for_each_placed_count(counts, [&](auto& count) { columns.value(count); });
-        if (counts.organisms > simulation::placed_max || counts.food > simulation::placed_max ||
-            counts.poison > simulation::placed_max) {
-            return refusal("it has more placed items or organisms than a world can have");
-        }
-    }
-    const std::vector<IslandShape> whole = with_placed(shapes, placed);
-    const bool has_given = (static_cast<std::uint8_t>(bytes.front()) & given_flag) != 0;
-    std::vector<std::uint32_t> given_counts(has_given ? shapes.size() : 0);
-    const std::size_t placed_bytes = bytes_of(placed, shapes);
-    if (bytes.size() < 1 + placed_bytes + given_counts.size() * sizeof(std::uint32_t)) {
-        return refusal("its size differs from that of a state of this world");
-    }
-    Columns counts{bytes.substr(1 + placed_bytes)};
-    for (std::size_t i = 0; i < given_counts.size(); ++i) {
-        counts.value(given_counts[i]);
-        if (given_counts[i] > whole[i].organisms) {
-            return refusal("it has fitness for more organisms than its world has");
-        }
-    }
-    if (bytes.size() != bytes_of(whole, over) + placed_bytes + bytes_of(given_counts)) {
-        return refusal("its size differs from that of a state of this world");
-    }
-    state.islands.assign(shapes.size(), {});
-    state.given_fitness.assign(given_counts.size(), {});
-    state.ended.assign(over ? shapes.size() : 0, {});
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        state.islands[i].placed_food = placed[i].food;
-        state.islands[i].placed_poison = placed[i].poison;
-        state.islands[i].placed.resize(placed[i].organisms);
-        for (IslandState::Placed& organism : state.islands[i].placed) {
-            organism.genes.resize(shapes[i].genes);
-            for (float& gene : organism.genes) {
-                columns.value(gene);
-            }
-            columns.value(organism.tick);
-        }
-    }
-    for (std::uint32_t& count : given_counts) {
-        columns.value(count);
-    }
-    for (std::size_t i = 0; i < given_counts.size(); ++i) {
-        state.given_fitness[i].resize(given_counts[i]);
-        for (double& fitness : state.given_fitness[i]) {
-            columns.value(fitness);
-        }
-    }
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        IslandState& island = state.islands[i];
-        resize(island, whole[i]);
-        for_each_count(island.counts, [&](auto& count) { columns.value(count); });
-        for_each_column(island, [&](auto& range, auto&& part) {
-            for (auto& element : range) {
-                columns.value(part(element));
-            }
-        });
-    }
-    for (std::size_t i = 0; i < state.ended.size(); ++i) {
-        state.ended[i].genes.resize(shapes[i].genes);
-        for_each_statistic(state.ended[i], [&]<class T>(T& number) {
-            if constexpr (std::is_floating_point_v<T>) {
-                columns.value(number);
-            } else {
-                std::uint64_t whole = 0;
-                columns.value(whole);
-                number = static_cast<T>(whole);
-            }
-        });
-    }
-    EVOD_ASSERT(columns.empty());
-    return {};
+    return read_state(columns, shapes, state);
 }
 
 } // namespace evod::run_file

@@ -1,8 +1,7 @@
-// Checkpoint: encodes the islands of a world's state as columns, compressed by zstd. The layout: docs/RUN_FILE.md.
+// Checkpoint: the bytes of a world's state (simulation/state_bytes.h), compressed by zstd.
 //
-// The bytes that are read come from an untrusted file. The shapes of the islands at the beginning of the generation
-// determine the size of the uncompressed state, so decoding allocates no more memory than that. World::restore() checks
-// the values.
+// The bytes that are read come from an untrusted file. Decoding allocates no more memory than a state of the islands can
+// need.
 #pragma once
 
 #include "server/base/result.h"
@@ -15,18 +14,14 @@
 
 namespace evod::run_file {
 
-/// Encodes state.islands and state.ended as columns and compresses them.
+/// Encodes and compresses the state of the islands.
 std::string pack(const simulation::WorldState& state);
 
 /// Converts a checkpoint to the form that a run file stores.
 StoredCheckpoint pack(const Checkpoint& checkpoint);
 
-/// Decodes state.islands and state.ended. Refused unless `packed` is a compressed state of islands with these shapes.
+/// Decodes the state of the islands. Refused unless `packed` is a compressed state of islands with these shapes.
 base::Result<void> unpack(std::string_view packed, std::span<const simulation::IslandShape> shapes,
                           simulation::WorldState& state);
-
-/// Like unpack(), but reads uncompressed bytes.
-base::Result<void> read_columns(std::string_view bytes, std::span<const simulation::IslandShape> shapes,
-                                simulation::WorldState& state);
 
 } // namespace evod::run_file

@@ -316,8 +316,8 @@ Result<std::vector<simulation::GenerationStatistics>> Generations::statistics_of
     return statistics;
 }
 
-Result<simulation::World::History> Generations::history(std::uint64_t before, std::size_t count) {
-    simulation::World::History history;
+Result<simulation::History> Generations::history(std::uint64_t before, std::size_t count) {
+    simulation::History history;
     const std::uint64_t own = identity_.first_generation;
     const std::uint64_t first =
         std::max(own - identity_.inherited_generations, before - std::min<std::uint64_t>(before, count));
@@ -339,7 +339,7 @@ Result<simulation::World::History> Generations::history(std::uint64_t before, st
 }
 
 Result<void> Generations::read_history(const char* table, std::uint64_t first, std::uint64_t end,
-                                       simulation::World::History& history) {
+                                       simulation::History& history) {
     const std::vector<std::int64_t> range{static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)};
     TableReader<StatisticsTable> numbers{database_.database, from_generation_to, range, table};
     // Reads the selection accounts of the same generations, and of one more if the last generation has not ended.

@@ -41,7 +41,7 @@ class Generations {
     base::Result<std::vector<simulation::GenerationStatistics>> statistics_of(std::uint64_t generation);
     /// The statistics of the last `count` generations before generation `before`, oldest first. For a fork, they
     /// include inherited statistics.
-    base::Result<simulation::World::History> history(std::uint64_t before, std::size_t count);
+    base::Result<simulation::History> history(std::uint64_t before, std::size_t count);
 
     void write(const Inherited& inherited);
     void write(const GenerationBegun& begun);
@@ -61,7 +61,7 @@ class Generations {
     /// Reads statistics from a table and appends them to `history`, from generation `first` up to but not including
     /// `end`.
     base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
-                                    simulation::World::History& history);
+                                    simulation::History& history);
     /// The numbers of the genes beyond those of the body in a generation, one row per island.
     base::Result<std::vector<MoreGenesTable::Row>> more_genes_of(std::uint64_t generation, std::size_t island_count);
     void write_more_genes(std::uint64_t generation, std::uint64_t island,

@@ -77,7 +77,7 @@ GenerationBegun beginning_of(const simulation::World& world);
 
 /// The statistics that a fork copies from its origin. They belong to the generations before the fork's first one.
 struct Inherited {
-    simulation::World::History history;
+    simulation::History history;
 };
 using simulation::IslandOutcome;
 struct GenerationEnded {

@@ -16,7 +16,7 @@ class Alone final : public Processes {
   public:
     std::uint32_t rank() const override { return 0; }
     std::uint32_t size() const override { return 1; }
-    std::vector<std::string> gather(std::string part) override { return base::no_exchange().gather(std::move(part)); }
+    std::vector<std::string> gather(std::string part) override { return {std::move(part)}; }
     std::vector<std::string> swap(std::vector<std::string> parts) override { return parts; }
     std::string broadcast(std::string from_first) override { return from_first; }
     std::uint32_t on_this_machine() const override { return 1; }

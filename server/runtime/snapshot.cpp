@@ -75,7 +75,7 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
     taken->item_radius_px = entry.world.parameters().active.item_radius_px;
     taken->island_count = entry.world.island_count();
     taken->after_change = after_change;
-    entry.world.bring(islands);
+    entry.world.islands().bring(islands);
     taken->islands.resize(islands.size());
     for (std::size_t i = 0; i < islands.size(); ++i) {
         copy(entry.world.island(islands[i]), entry.world.parameters().active, taken->islands[i]);

@@ -13,15 +13,9 @@
 namespace evod::simulation {
 namespace {
 
-// The kinds of entities in the state hash, except organisms. The hashes of every run depend on these numbers.
-enum HashKind : std::uint32_t {
-    FoodKind = 2,
-    PoisonKind = 3,
-    CrateKind = 4,
-    ChromosomeKind = 5,
-    EatenKind = 6,
-    PlacedKind = 7
-};
+// The kinds of entities in the state hash, except organisms and what they have eaten (6, meals.cpp). The hashes of every
+// run depend on these numbers.
+enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5, PlacedKind = 7 };
 
 bool is_kinematic(const parameters::Parameters& p) {
     return p.controller == evolution::Controller::Network && p.locomotion == evolution::Locomotion::Kinematic;
@@ -253,19 +247,6 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
     hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + eaten_hash_ + hash_of_boxes();
 }
 
-/// Processes food and poison, in parallel if that is faster.
-template <class OfFood, class OfPoison>
-void Island::for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
-    executor.parallel_for(2, physics::worth_dividing(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
-        if (kinds.begin == 0) {
-            of_food();
-        }
-        if (kinds.end == 2) {
-            of_poison();
-        }
-    });
-}
-
 void Island::resize_blocks(std::size_t count) {
     constexpr std::size_t usually_enough = 32;
     const std::size_t before = blocks_.size();
@@ -352,146 +333,6 @@ void Island::move(std::size_t block) {
         blocks_[block].hash += base::StateHash{headings.low, headings.high};
     }
     blocks_[block].dying.assign(dying_indices, dying_indices + dying.count);
-}
-
-base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
-                                             base::Executor& executor) {
-    // Organisms are processed in blocks, in parallel. The grids of items are then changed sequentially.
-    constexpr std::size_t events_worth_dividing = 128;
-    std::size_t events = food_feeding_.award() + poison_feeding_.award();
-    for (const Block& block : blocks_) {
-        events += block.dying.size();
-    }
-    executor.parallel_for(blocks_.size(), events < events_worth_dividing ? blocks_.size() : 8, [&](base::Range blocks) {
-        for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
-            feed_and_remove_dead_in_block(parameters, tick, block);
-        }
-    });
-
-    base::StateHash organisms;
-    for (const Block& block : blocks_) {
-        organisms += block.hash;
-        food_.add_to_hash(block.food_hash_change);
-        poison_.add_to_hash(block.poison_hash_change);
-        eaten_hash_ += block.eaten_hash_change;
-        counts_.food_eaten += block.food_eaten;
-        counts_.poison_eaten += block.poison_eaten;
-        counts_.starved_count += block.starved;
-        counts_.poisoned_count += block.poisoned;
-        alive_count_ -= block.starved + block.poisoned;
-    }
-    const auto take_out = [this](Items& items, const Feeding& feeding) {
-        constexpr std::size_t blocks_ahead = 4;
-        for (std::size_t block = 0; block < blocks_.size(); ++block) {
-            if (block + blocks_ahead < blocks_.size()) {
-                for (const Touch& touch : feeding.touches(block + blocks_ahead)) {
-                    items.prefetch_place(touch.place);
-                }
-            }
-            for (const Touch& touch : feeding.touches(block)) {
-                if (touch.gets_it) {
-                    items.take_out(touch.item, touch.place);
-                }
-            }
-        }
-    };
-    for_each_kind(
-        executor, [&] { take_out(food_, food_feeding_); }, [&] { take_out(poison_, poison_feeding_); });
-    return organisms;
-}
-
-void Island::feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick,
-                                           std::size_t index) {
-    Block& block = blocks_[index];
-    block.food_hash_change = block.poison_hash_change = block.eaten_hash_change = {};
-    block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
-    for (const Touch& touch : food_feeding_.touches(index)) {
-        food_.prefetch_item(touch.item);
-        __builtin_prefetch(&fate_.food_eaten[touch.id], 1);
-        __builtin_prefetch(&bodies_.id[touch.body]);
-        __builtin_prefetch(&bodies_.x[touch.body]);
-        __builtin_prefetch(&bodies_.y[touch.body]);
-        __builtin_prefetch(&bodies_.velocity_x[touch.body]);
-        __builtin_prefetch(&bodies_.velocity_y[touch.body]);
-        __builtin_prefetch(&living_.health[touch.body], 1);
-    }
-    // All food is eaten before all poison. Items of one kind are equal, so their order does not matter.
-    for (const Touch& touch : food_feeding_.touches(index)) {
-        if (!touch.gets_it) {
-            continue;
-        }
-        const float cap = parameters.health_cap_per_size > 0
-                              ? health_cap(evolution::body_genes(born_.genes, touch.id), parameters)
-                              : std::numeric_limits<float>::infinity();
-        change_health(block, touch.body,
-                      [&](float health) { return std::min(health + static_cast<float>(parameters.food_health), cap); });
-        block.food_hash_change += food_.set_due(touch.item, tick);
-        count_eaten(block, touch.id, fate_.food_eaten, food_counts_);
-        ++block.food_eaten;
-    }
-    for (const Touch& touch : poison_feeding_.touches(index)) {
-        if (!touch.gets_it) {
-            continue;
-        }
-        change_health(block, touch.body,
-                      [&](float health) { return health - static_cast<float>(parameters.poison_harm); });
-        block.poison_hash_change += poison_.set_due(touch.item, tick);
-        count_eaten(block, touch.id, fate_.poison_eaten, poison_counts_);
-        ++block.poison_eaten;
-    }
-    // The cost of living is subtracted at the beginning of a tick, and poison at its end. If a dying organism ate
-    // poison in this tick, poison was therefore the cause of death.
-    for (const Touch& touch : poison_feeding_.touches(index)) {
-        if (touch.gets_it && is_dying(touch.body)) {
-            record_death(block, touch.body, tick, CauseOfDeath::Poisoned);
-            ++block.poisoned;
-        }
-    }
-    for (const std::uint32_t body : block.dying) {
-        if (is_dying(body)) {
-            record_death(block, body, tick, CauseOfDeath::Starved);
-            ++block.starved;
-        }
-    }
-}
-
-template <class Change>
-void Island::change_health(Block& block, std::uint32_t body, Change&& change) {
-    block.hash -= hash_of_organism(bodies_, living_, body);
-    living_.health[body] = change(living_.health[body]);
-    block.hash += hash_of_organism(bodies_, living_, body);
-}
-
-void Island::count_eaten(Block& block, std::uint32_t id, std::vector<std::uint32_t>& eaten, bool counts) {
-    if (!counts) {
-        ++eaten[id];
-        return;
-    }
-    block.eaten_hash_change -= hash_of_eaten(id);
-    ++eaten[id];
-    block.eaten_hash_change += hash_of_eaten(id);
-}
-
-base::StateHash Island::hash_of_eaten(std::uint32_t id) const {
-    const std::uint32_t food = food_counts_ ? fate_.food_eaten[id] : 0;
-    const std::uint32_t poison = poison_counts_ ? fate_.poison_eaten[id] : 0;
-    return food == 0 && poison == 0 ? base::StateHash{} : base::EntityHash{EatenKind, id}.add(food, poison).finish();
-}
-
-bool Island::is_dying(std::uint32_t body) const {
-    return !bodies_.is_void(body) && living_.health[body] <= 0;
-}
-
-void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause) {
-    const std::uint32_t id = bodies_.id[body];
-    fate_.cause[id] = cause;
-    fate_.lived_ticks[id] = tick - placed_tick(id);
-    block.hash -= hash_of_organism(bodies_, living_, body);
-    body_of_[id] = no_body;
-    bodies_.remove(body);
-    perception_.remove(body);
-    stepper_.near().remove(body);
-    living_.health[body] = -std::numeric_limits<float>::infinity();
 }
 
 base::StateHash Island::hash_of_boxes() const {

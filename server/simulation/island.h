@@ -186,8 +186,18 @@ class Island {
         base::StateHash food_hash_change, poison_hash_change, eaten_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };
+    /// Processes food and poison, in parallel if that is faster.
     template <class OfFood, class OfPoison>
-    void for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison);
+    void for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
+        executor.parallel_for(2, physics::worth_dividing(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
+            if (kinds.begin == 0) {
+                of_food();
+            }
+            if (kinds.end == 2) {
+                of_poison();
+            }
+        });
+    }
     void resize_blocks(std::size_t count);
     void feed_and_remove_dead_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index);
     template <class Change>

@@ -328,11 +328,11 @@ Result<Construction> Laboratory::construction(const CreateWorld& command) const 
     }
     return Construction{
         .construct =
-            [command, leader = leader_](base::Executor&) {
-                return World{command.parameters, command.seed, command.first_population, command.schedule, leader};
+            [command, maker = maker_](base::Executor&) {
+                return World{command.parameters, command.seed, command.first_population, command.schedule, maker};
             },
         .genes = genes_of(command.parameters),
-        .is_shared = leader_ != nullptr};
+        .is_shared = maker_ != nullptr};
 }
 
 Result<Applied> Laboratory::adopt(const CreateWorld& command, World world) {
@@ -383,10 +383,10 @@ Result<Construction> Laboratory::construction(const ResetWorld& command) const {
             .reason = base::Reason::ResetImpossible};
     }
     return Construction{.construct = [&world, seed = command.seed.value_or(world.seed()),
-                                      leader = leader_](base::Executor&) { return world.restarted(seed, leader); },
+                                      maker = maker_](base::Executor&) { return world.restarted(seed, maker); },
                         .genes = genes_of(*beginning),
                         .reads_world = true,
-                        .is_shared = leader_ != nullptr};
+                        .is_shared = maker_ != nullptr};
 }
 
 Result<Applied> Laboratory::adopt(const ResetWorld& command, World world) {
@@ -577,10 +577,10 @@ Result<Construction> Laboratory::construction(const ForkWorld& command) const {
     }
     const World& world = (*found)->world;
     return Construction{
-        .construct = [&world, leader = leader_](base::Executor& executor) { return world.copy(executor, leader); },
+        .construct = [&world, maker = maker_](base::Executor& executor) { return world.copy(executor, maker); },
         .genes = genes_of(world.parameters().active),
         .reads_world = true,
-        .is_shared = world.is_shared() || leader_ != nullptr};
+        .is_shared = world.is_shared() || maker_ != nullptr};
 }
 
 Result<Applied> Laboratory::adopt(const ForkWorld& command, World world) {
@@ -602,8 +602,8 @@ Result<Applied> Laboratory::add(const std::string& name, const RunId& run_id, Wo
     return applied;
 }
 
-void Laboratory::share(Leader& leader, base::Executor& executor) {
-    leader_ = &leader;
+void Laboratory::share(IslandsMaker& maker, base::Executor& executor) {
+    maker_ = &maker;
     for (const auto& entry : entries_) {
         if (!entry->replay) {
             share(entry->world, executor);
@@ -612,8 +612,8 @@ void Laboratory::share(Leader& leader, base::Executor& executor) {
 }
 
 void Laboratory::share(World& world, base::Executor& executor) const {
-    if (leader_ != nullptr && !world.is_shared() && world.island_count() >= leader_->exchange().size()) {
-        world = world.copy(executor, leader_);
+    if (maker_ != nullptr && !world.is_shared() && maker_->divides(world.island_count())) {
+        world = world.copy(executor, maker_);
     }
 }
 

@@ -135,11 +135,10 @@ class Laboratory {
     base::Result<Applied> adopt(const ResetWorld& command, World world);
     base::Result<Applied> adopt(const ForkWorld& command, World world);
 
-    /// Shares the live worlds with the other processes, also those that are created later. A world with fewer islands
-    /// than processes is not shared.
+    /// Divides the islands of the live worlds among processes, also those of worlds that are created later.
     ///
-    /// leader  must outlive the laboratory.
-    void share(Leader& leader, base::Executor& executor);
+    /// maker  must outlive the laboratory.
+    void share(IslandsMaker& maker, base::Executor& executor);
 
     /// Adds a world that was created elsewhere; its name must be unused.
     void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
@@ -209,7 +208,8 @@ class Laboratory {
     std::size_t world_count() const;
     /// Returns the name itself or, if it is empty, the name that it means.
     std::string_view meant_by(std::string_view name) const;
-    /// Shares a world that is not shared, if there are processes to share it with.
+    /// Divides the islands of a world that are all in this process, if there are processes among which they can be
+    /// divided.
     void share(World& world, base::Executor& executor) const;
     /// Returns why no world with that name can be created; nullopt if one can.
     std::optional<base::Refusal> refusal_of(const std::string& name) const;
@@ -219,7 +219,7 @@ class Laboratory {
     std::vector<DamagedWorld> damaged_;
     std::vector<Event> events_;
     std::optional<Storage> storage_;
-    Leader* leader_ = nullptr; // nullptr: worlds are not shared
+    IslandsMaker* maker_ = nullptr; // nullptr: all islands are in this process
     std::uint64_t leases_granted_ =
         0; // a number is never used again, also after a reset or a new world of the same name
 };

@@ -2,7 +2,6 @@
 
 #include "server/base/assert.h"
 #include "server/base/inline_executor.h"
-#include "server/simulation/packed.h"
 
 #include <algorithm>
 #include <bit>
@@ -49,7 +48,7 @@ base::Result<void> check(const World& world, const SetFitness& command) {
         return not_awaited("island " + std::to_string(command.island) + " has been rated already in generation " +
                            std::to_string(generation));
     }
-    const std::size_t given = world.fitness()[command.island].size();
+    const std::size_t given = world.given_fitness()[command.island].size();
     if (command.first_organism != 0 && command.first_organism != given) {
         return refusal_of(RefusalCode::InvalidArgument, "the numbers of an island are given in order of organisms",
                           base::Reason::FieldInvalid,
@@ -69,12 +68,11 @@ base::Result<void> check(const World& world, const SetFitness& command) {
 }
 
 bool World::is_rated(std::uint32_t island) const {
-    return !fitness_.empty() && fitness_[island].size() == organism_count(island);
+    return !given_fitness_.empty() && given_fitness_[island].size() == organism_count(island);
 }
 
 void World::set_fitness(const SetFitness& command) {
-    sharing_.order(Order::SetFitness, [&](base::Packer& order) { pack(order, command); });
-    std::vector<double>& fitness = fitness_[command.island];
+    std::vector<double>& fitness = given_fitness_[command.island];
     if (command.first_organism == 0) {
         fitness.clear();
     }

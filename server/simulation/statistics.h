@@ -1,4 +1,4 @@
-// Statistics: the results of a generation on an island, and the current state of an island.
+// Statistics: the results of a generation on an island, those of all ended generations, and the current state of an island.
 //
 // Determinism  organisms are summed in order of id, in blocks of fixed size; the sums of the blocks are added in order.
 #pragma once
@@ -7,10 +7,14 @@
 #include "server/evolution/chromosome.h"
 #include "server/evolution/price.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace evod::parameters {
@@ -44,6 +48,38 @@ struct GenerationStatistics {
     // does not contain it.
     std::optional<evolution::SelectionAccount> account = std::nullopt;
 };
+
+/// The statistics of an ended generation, one entry per island. They are immutable, and copies share them.
+class GenerationRows {
+  public:
+    GenerationRows(std::vector<GenerationStatistics> rows)
+        : rows_{std::make_shared<const std::vector<GenerationStatistics>>(std::move(rows))} {}
+    operator const std::vector<GenerationStatistics>&() const { return *rows_; }
+
+    std::size_t size() const { return rows_->size(); }
+    auto begin() const { return rows_->begin(); }
+    auto end() const { return rows_->end(); }
+    const GenerationStatistics& front() const { return rows_->front(); }
+    const GenerationStatistics& operator[](std::size_t island) const { return (*rows_)[island]; }
+
+  private:
+    std::shared_ptr<const std::vector<GenerationStatistics>> rows_;
+};
+
+/// The ended generations, oldest first.
+using History = std::deque<GenerationRows>;
+
+/// The maximum number of generations, and of rows, whose statistics are kept in memory. A generation has one row per
+/// island, whose size grows with the number of genes, so with many islands or genes fewer generations are kept. The
+/// oldest are dropped first.
+constexpr std::size_t history_generations_kept = 10'000, history_rows_kept = 131'072;
+constexpr std::size_t history_generations_kept_of(std::size_t island_count,
+                                                  std::size_t gene_count = evolution::body_gene_count) {
+    const std::size_t rows = history_rows_kept * evolution::body_gene_count / gene_count;
+    return std::min(history_generations_kept, std::max<std::size_t>(rows / island_count, 1));
+}
+/// The maximum number of previous generations whose statistics a fork keeps.
+constexpr std::size_t history_generations_inherited = 1'000;
 
 /// Calls visit(name, value) for every number except those of `genes` and `account`, in the order of the columns in
 /// files. In files, the columns of for_each_gene_number() and those of `account` follow.

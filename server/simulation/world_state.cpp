@@ -1,7 +1,6 @@
 #include "server/simulation/world_state.h"
 
 #include "server/base/assert.h"
-#include "server/simulation/packed.h"
 #include "server/simulation/rating.h"
 #include "server/simulation/world.h"
 
@@ -246,16 +245,11 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
 }
 
 WorldState World::state(base::Executor& executor) const {
-    sharing_.order(Order::State);
-    WorldState state{.moment = moment_, .parameters = parameters_, .islands = {}, .ended = {}};
-    if (is_fitness_external()) {
-        state.given_fitness = fitness_;
-    }
-    state.islands.resize(islands_.size());
-    for_each_island(share_, executor, [&](std::size_t i) { state.islands[i] = islands_[i].state(executor); });
-    collect_islands(
-        sharing_.exchange(), share_, [&](base::Packer& packer, std::size_t i) { pack(packer, state.islands[i]); },
-        [&](base::Unpacker& unpacker, std::size_t i) { state.islands[i] = unpack_island_state(unpacker); });
+    WorldState state{.moment = moment_,
+                     .parameters = parameters(),
+                     .islands = islands_->states(executor),
+                     .ended = {},
+                     .given_fitness = given_fitness_};
     if (generation_over_) {
         state.ended = history_.back();
     }
@@ -263,16 +257,14 @@ WorldState World::state(base::Executor& executor) const {
 }
 
 std::vector<IslandShape> World::shapes() const {
-    EVOD_ASSERT(!is_shared());
     std::vector<IslandShape> shapes;
-    for (const Island& island : islands_) {
+    for (const Island& island : *islands_) {
         shapes.push_back(island.shape());
     }
     return shapes;
 }
 
 base::Result<void> World::restore(const WorldState& state, base::Executor& executor) {
-    EVOD_ASSERT(!is_shared());
     EVOD_ASSERT(moment_.generation_tick == 0);
     const auto wrong = [](const char* what) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
@@ -287,14 +279,14 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         return wrong("moment");
     }
     // Parameters that take effect at a generation must still have the values from the beginning of this generation.
-    if (!(parameters::taking_effect(parameters_.active, parameters::RequestedParameters{set.active},
+    if (!(parameters::taking_effect(parameters_.active(), parameters::RequestedParameters{set.active},
                                     base::Effect::NextTick) == set.active) ||
         !parameters::validate(set.active).empty() ||
         !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
              .empty()) {
         return wrong("parameters");
     }
-    if (state.islands.size() != islands_.size()) {
+    if (state.islands.size() != islands_->size()) {
         return wrong("number of islands");
     }
     // No tick of a generation follows its last one, so the previous tick must not have ended the generation.
@@ -303,11 +295,11 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     }
     const auto tick = static_cast<std::uint32_t>(moment.generation_tick);
     std::uint64_t alive = 0, removed = 0;
-    for (std::size_t i = 0; i < islands_.size(); ++i) {
-        if (auto checked = islands_[i].check(state.islands[i], tick); !checked) {
+    for (std::size_t i = 0; i < islands_->size(); ++i) {
+        if (auto checked = island(i).check(state.islands[i], tick); !checked) {
             return checked;
         }
-        if (tick == 0 && !differ_only_by_commands(islands_[i].state(executor), state.islands[i])) {
+        if (tick == 0 && !differ_only_by_commands(island(i).state(executor), state.islands[i])) {
             return wrong("beginning of the generation");
         }
         alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
@@ -317,11 +309,11 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     const bool removed_last =
         alive == 0 && removed > 0 && state.ended.empty() && state.given_fitness.empty() && !ends(tick, 1);
     const bool after_last_tick = ends(tick, alive) && !removed_last;
-    if (!can_be_given(state, after_last_tick && is_fitness_external())) {
+    if (!can_be_given(state, after_last_tick && set.active.fitness == parameters::FitnessFunction::External)) {
         return wrong("fitness");
     }
     const bool over = after_last_tick && is_whole(state);
-    if (state.ended.size() != (over ? islands_.size() : 0)) {
+    if (state.ended.size() != (over ? islands_->size() : 0)) {
         return wrong("end of the generation");
     }
     for (std::size_t i = 0; i < state.ended.size(); ++i) {
@@ -331,33 +323,19 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         }
     }
 
-    apply_state(state, executor);
-    return {};
-}
-
-void World::apply_state(const WorldState& state, base::Executor& executor) {
-    const auto tick = static_cast<std::uint32_t>(state.moment.generation_tick);
-    for_each_island(share_, executor,
-                    [&](std::size_t i) { islands_[i].restore(state.islands[i], tick, parameters_.active, executor); });
-    for (std::size_t i = share_.begin; i < share_.end && !founders_.empty(); ++i) {
-        founders_[i].resize(islands_[i].fate().cause.size(), no_founder);
-    }
+    islands_->restore(parameters_.active(), state, executor);
     moment_ = state.moment;
-    parameters_ = state.parameters;
-    exchange_summaries();
-    if (is_fitness_external()) {
-        fitness_ = state.given_fitness;
-    } else if (!state.ended.empty()) {
-        find_fitness(executor);
-    }
+    parameters_.restore(state.parameters);
+    given_fitness_ = state.given_fitness;
     if (!state.ended.empty()) {
         std::vector<GenerationStatistics> ended = state.ended;
-        for (std::size_t i = share_.begin; i < share_.end; ++i) {
-            ended[i].account = islands_[i].born().account; // can be derived from the generation's beginning
+        for (std::size_t i = 0; i < ended.size(); ++i) {
+            ended[i].account = island(i).born().account; // can be derived from the generation's beginning
         }
         close_generation(ended);
     }
     update_hash();
+    return {};
 }
 
 } // namespace evod::simulation

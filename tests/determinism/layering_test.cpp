@@ -1,7 +1,7 @@
 // Layering: which folders include which, read from the #include lines, and what the core may not use.
 //
 // Covered      every .h and .cpp below server/, client/, proto/ and tests/: includes of this project. The core,
-//              server/{base, physics, evolution, parameters, simulation}: headers and calls that would make a run
+//              server/{base, physics, evolution, parameters, simulation, simulation/shared}: headers and calls that would make a run
 //              depend on time, disk, threads, a device or the last bits of the C library. server/{protocol, run_file,
 //              recording, replay}: sockets. What threads exchange: closures. All: MPI.
 // Not covered  the contents of library headers; Python and scripts.
@@ -36,10 +36,12 @@ struct Source {
 /// The folders of server/ and client/viewer/ in the order in which ARCHITECTURE.md prints them, from top to bottom.
 ///
 /// In its code blocks, a line such as `server/` or `client/viewer/shell/  …` begins a tree, and an indented line such as
-/// `   runtime/  …` is a folder of that tree. A folder may include only folders of its tree that are printed below it.
+/// `   runtime/  …` is a folder of that tree. A folder may include only folders of its tree that are printed below it. A
+/// folder within another one is printed above it.
 const std::vector<std::string>& printed_folders() {
     static const std::vector<std::string> all = [] {
-        static const std::regex top{R"(^((?:\w+/)+)(?:\w+\.cpp)?(?:\s.*)?$)"}, inner{R"(^\s+(\w+)/(?:\s.*)?$)"};
+        static const std::regex top{R"(^((?:\w+/)+)(?:\w+\.cpp)?(?:\s.*)?$)"},
+            inner{R"(^\s+(\w+(?:/\w+)?)/(?:\s.*)?$)"};
         std::vector<std::string> folders;
         std::ifstream file{root / "ARCHITECTURE.md"};
         std::string tree;
@@ -80,8 +82,8 @@ const std::map<std::string, std::set<std::string>> other_folders = {
     {"tests/support", {}}, // for the worker pool of the preset tsan
 };
 
-const std::set<std::string> core = {"server/base", "server/physics", "server/evolution", "server/parameters",
-                                    "server/simulation"};
+const std::set<std::string> core = {"server/base",       "server/physics",    "server/evolution",
+                                    "server/parameters", "server/simulation", "server/simulation/shared"};
 
 bool is_below(const std::string& folder, const std::string& upper) {
     const auto& folders = printed_folders();

@@ -309,11 +309,11 @@ Result<Applied> fork_at_opening(Laboratory& laboratory, const ForkWorld& command
 class SharedLaboratory : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(SharedLaboratory, EqualsOneThatIsAlone) {
-    support::share_worlds(3, 1, [&](Leader& leader, base::Executor& executor) {
+    support::share_worlds(3, 1, [&](IslandsMaker& maker, base::Executor& executor) {
         base::InlineExecutor here;
         Draws draws{GetParam()};
         Laboratory alone, shared;
-        shared.share(leader, executor);
+        shared.share(maker, executor);
         for (int step = 0; step < 150; ++step) {
             const Command command = draws.command(alone);
             const auto* fork = std::get_if<ForkWorld>(&command);
@@ -347,13 +347,13 @@ TEST(SharedLaboratories, ShareWorldsThatBeganBefore) {
                                             .expected_revision = {},
                                             .at = parameters::PlannedMoment{.generation = {}, .tick = 70}});
             advance(alone, ticks, 1, here);
-            support::share_worlds(2, 1, [&](Leader& leader, base::Executor& executor) {
+            support::share_worlds(2, 1, [&](IslandsMaker& maker, base::Executor& executor) {
                 Laboratory reference, shared;
                 for (Laboratory* laboratory : {&reference, &shared}) {
                     const Entry& entry = *alone.entries().front();
                     laboratory->adopt(std::make_unique<Entry>(Entry{entry.name, {}, {}, entry.world.copy(here)}));
                 }
-                shared.share(leader, executor);
+                shared.share(maker, executor);
                 ASSERT_TRUE(shared.entries().front()->world.is_shared());
                 for (int step = 0; step < 6; ++step) {
                     ASSERT_NO_FATAL_FAILURE(expect_equal(reference, shared, true, executor)) << experiment;

@@ -3,7 +3,7 @@
 
 #include "server/base/inline_executor.h"
 #include "server/parameters/experiment.h"
-#include "server/simulation/packed.h"
+#include "server/simulation/shared/orders.h"
 #include "tests/determinism/scenarios.h"
 #include "tests/support/shared_worlds.h"
 
@@ -19,8 +19,8 @@ namespace {
 using simulation::World;
 
 /// Creates the world of a scenario. Its changes are planned for the ticks before which Play makes them.
-World world_of(const Scenario& scenario, simulation::Leader* leader) {
-    World world{parameters_of(scenario.experiment), scenario.seed, {}, {}, leader};
+World world_of(const Scenario& scenario, simulation::IslandsMaker* maker) {
+    World world{parameters_of(scenario.experiment), scenario.seed, {}, {}, maker};
     for (const Change& change : scenario.changes) {
         const parameters::Parameters values = parameters_of(change.parameters);
         parameters::PlannedChange planned{
@@ -39,7 +39,7 @@ std::string statistics_of(const World& world) {
     base::Packer packer;
     for (const simulation::GenerationRows& generation : world.history()) {
         for (const simulation::GenerationStatistics& island : generation) {
-            simulation::pack(packer, island);
+            packer.add(island);
         }
     }
     return packer.take();
@@ -85,8 +85,8 @@ void compare(const Scenario& scenario, std::uint32_t processes, std::uint64_t sl
     base::InlineExecutor one;
     World reference = world_of(scenario, nullptr);
     const Seen alone = advance(reference, scenario.ticks, 1, one);
-    support::share_worlds(processes, threads, [&](simulation::Leader& leader, base::Executor& executor) {
-        World world = world_of(scenario, &leader);
+    support::share_worlds(processes, threads, [&](simulation::IslandsMaker& maker, base::Executor& executor) {
+        World world = world_of(scenario, &maker);
         ASSERT_TRUE(world.is_shared());
         expect_equal(advance(world, scenario.ticks, slice, executor), alone);
         EXPECT_EQ(world.bred().founders, reference.bred().founders);

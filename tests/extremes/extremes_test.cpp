@@ -5,9 +5,8 @@
 #include "server/evolution/breeding_record.h"
 #include "server/parameters/schedule.h"
 #include "server/simulation/entities.h"
-#include "server/simulation/packed.h"
 #include "server/simulation/rating.h"
-#include "server/simulation/sharing.h"
+#include "server/simulation/state_bytes.h"
 #include "server/simulation/world.h"
 #include "tests/extremes/extreme_parameters.h"
 #include "tests/support/everyday.h"
@@ -227,10 +226,7 @@ class Extreme {
 
     /// As the query for the breeding record does.
     void look_at_breeding(const Island& island) {
-        const std::span<const double> fitness = world_.fitness()[island.index()];
-        if (fitness.empty()) {
-            return; // that of another process
-        }
+        const std::vector<double> fitness = world_.outcomes()[island.index()].fitness;
         const parameters::Parameters next = parameters::taking_effect(
             world_.parameters().active, world_.parameters().requested, base::Effect::NextGeneration);
         const evolution::BreedingRecord record = evolution::record_breeding(
@@ -250,17 +246,14 @@ class Extreme {
 
     /// Restores a world from the state, which is packed and unpacked, at the beginning of the generation.
     void restore() {
-        simulation::WorldState state = world_.state(executor_);
-        for (simulation::IslandState& island : state.islands) {
-            base::Packer packer;
-            pack(packer, island);
-            const std::string bytes = packer.take();
-            base::Unpacker unpacker{bytes};
-            simulation::IslandState unpacked = simulation::unpack_island_state(unpacker);
-            EXPECT_EQ(unpacked, island);
-            island = std::move(unpacked);
-        }
-        World copy{world_.seed(), world_.opening(), world_.bred().islands, {}, executor_};
+        const simulation::WorldState given = world_.state(executor_);
+        std::string bytes;
+        write_state(given, [&](std::string_view piece) { bytes += piece; });
+        World copy{world_.seed(), world_.opening(), world_.bred(), {}, executor_};
+        simulation::WorldState state = given;
+        const auto read = read_state(bytes, copy.shapes(), state);
+        ASSERT_TRUE(read) << to_text(read.error());
+        EXPECT_EQ(state.islands, given.islands);
         const auto restored = copy.restore(state, executor_);
         ASSERT_TRUE(restored) << to_text(restored.error());
         EXPECT_EQ(copy.hash(), world_.hash());
@@ -283,8 +276,8 @@ TEST(Extremes, FailNoAssertionAndGiveFiniteNumbers) {
         const parameters::Parameters set = extreme_parameters(draws);
         present_world = "seed " + std::to_string(seed) + text_of(set) + '\n';
         if (draws.chance(0.2)) {
-            support::share_worlds(2, 1, [&](simulation::Leader& leader, base::Executor& executor) {
-                World world{set, base::Seed{seed}, {}, {}, &leader};
+            support::share_worlds(2, 1, [&](simulation::IslandsMaker& maker, base::Executor& executor) {
+                World world{set, base::Seed{seed}, {}, {}, &maker};
                 Extreme{world, draws, executor}.live();
             });
         } else {

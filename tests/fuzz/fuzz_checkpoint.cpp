@@ -3,6 +3,7 @@
 // The first byte determines whether the rest is compressed, and the tick of the state.
 #include "server/base/inline_executor.h"
 #include "server/run_file/checkpoint.h"
+#include "server/simulation/state_bytes.h"
 #include "server/simulation/world.h"
 
 #include <cstdlib>
@@ -39,12 +40,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                  .ended = {}};
     const bool packed = data[0] >= 128;
     if (const auto read =
-            packed ? run_file::unpack(bytes, shapes, state) : run_file::read_columns(bytes, shapes, state);
+            packed ? run_file::unpack(bytes, shapes, state) : simulation::read_state(bytes, shapes, state);
         !read) {
         return 0;
     }
     base::InlineExecutor executor;
-    simulation::World world = first;
+    simulation::World world = first.copy(executor);
     if (const auto restored = world.restore(state, executor); !restored) {
         if (restored.error().message.empty() || world.hash() != first.hash()) {
             std::abort();

@@ -261,7 +261,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(!foreign);
         (void)check(**file);
         (void)(*file)->generations().history((*file)->generations().last() + 1,
-                                             simulation::World::history_generations_kept);
+                                             simulation::history_generations_kept);
         (void)(*file)->journal().read((*file)->contents().journal_entries);
     }
     for (const char* what : {"generations", "organisms", "events"}) {

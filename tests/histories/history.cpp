@@ -83,16 +83,16 @@ std::optional<std::string> History::play() {
             live(executor, nullptr);
         } else {
             note("a server starts that shares its worlds among " + std::to_string(processes) + " processes");
-            support::share_worlds(processes, 1, [this](simulation::Leader& leader, base::Executor& executor) {
-                live(executor, &leader);
+            support::share_worlds(processes, 1, [this](simulation::IslandsMaker& maker, base::Executor& executor) {
+                live(executor, &maker);
             });
         }
     }
     return failure_;
 }
 
-void History::live(base::Executor& executor, simulation::Leader* leader) {
-    auto opened = Server::open(folder(), options_, tick_takes_, executor, leader);
+void History::live(base::Executor& executor, simulation::IslandsMaker* maker) {
+    auto opened = Server::open(folder(), options_, tick_takes_, executor, maker);
     if (!opened) {
         return fail("the server does not start: " + to_text(opened.error()));
     }

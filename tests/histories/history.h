@@ -32,7 +32,7 @@ class History {
 
   private:
     /// Opens a server, lets it perform actions, and stops it.
-    void live(base::Executor& executor, simulation::Leader* leader);
+    void live(base::Executor& executor, simulation::IslandsMaker* maker);
     void act();
     void apply(const std::vector<v1::Request>& requests);
     std::vector<SentCommand> commands_of(const std::vector<v1::Request>& requests);

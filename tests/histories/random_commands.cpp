@@ -242,7 +242,8 @@ v1::Request RandomCommands::set_fitness(const Entry& entry) {
         ++island;
     }
     set.set_island(island);
-    const auto given = world.fitness().empty() ? 0 : static_cast<std::uint32_t>(world.fitness()[island].size());
+    const auto given =
+        world.given_fitness().empty() ? 0 : static_cast<std::uint32_t>(world.given_fitness()[island].size());
     const std::uint32_t count = world.organism_count(island);
     set.set_first_organism(given < count && draws_.chance(0.9) ? given : 0);
     const std::uint32_t missing = count - set.first_organism();

@@ -19,21 +19,21 @@ constexpr std::uint32_t passes_max = 200'000; // until a history is given up
 
 Result<std::unique_ptr<Server>> Server::open(const std::string& folder, const run_file::RunFile::Options& options,
                                              std::chrono::microseconds tick_takes, base::Executor& executor,
-                                             simulation::Leader* leader) {
+                                             simulation::IslandsMaker* maker) {
     auto archive = replay::Archive::open(folder, options, executor);
     if (!archive) {
         return archive.error();
     }
-    return std::unique_ptr<Server>{new Server{*std::move(archive), tick_takes, executor, leader}};
+    return std::unique_ptr<Server>{new Server{*std::move(archive), tick_takes, executor, maker}};
 }
 
 Server::Server(std::unique_ptr<replay::Archive> archive, std::chrono::microseconds tick_takes, base::Executor& executor,
-               simulation::Leader* leader)
+               simulation::IslandsMaker* maker)
     : archive_{std::move(archive)} {
     clock_.per_look = tick_takes;
     simulation::Laboratory laboratory = archive_->take_laboratory();
-    if (leader != nullptr) {
-        laboratory.share(*leader, executor);
+    if (maker != nullptr) {
+        laboratory.share(*maker, executor);
     }
     loops_.emplace(
         executor, clock_, [this](runtime::Answer answer) { on_answer(std::move(answer)); },

@@ -37,7 +37,7 @@ class Server {
     static base::Result<std::unique_ptr<Server>> open(const std::string& folder,
                                                       const run_file::RunFile::Options& options,
                                                       std::chrono::microseconds tick_takes, base::Executor& executor,
-                                                      simulation::Leader* leader);
+                                                      simulation::IslandsMaker* maker);
 
     const simulation::Laboratory& laboratory() const { return loops_->live.laboratory(); }
     const simulation::Entry* find(const std::string& name) const;
@@ -62,7 +62,7 @@ class Server {
 
   private:
     Server(std::unique_ptr<replay::Archive> archive, std::chrono::microseconds tick_takes, base::Executor& executor,
-           simulation::Leader* leader);
+           simulation::IslandsMaker* maker);
     void on_answer(runtime::Answer answer);
     bool is_answered() const;
     /// Lets the loops pass once. Moves the clock to the next pass, or waits a moment for other threads.

@@ -1,8 +1,8 @@
 // Shared worlds: lets the threads of one process play the processes that share worlds.
 #pragma once
 
-#include "server/simulation/sharing.h"
 #include "server/jobs/thread_pool.h"
+#include "server/simulation/shared/leader.h"
 #include "tests/support/threaded_exchange.h"
 
 #include <cstddef>
@@ -15,14 +15,13 @@ namespace evod::support {
 ///
 /// threads  of each process.
 inline void share_worlds(std::uint32_t processes, std::size_t threads,
-                         const std::function<void(simulation::Leader&, base::Executor&)>& work) {
+                         const std::function<void(simulation::shared::Leader&, base::Executor&)>& work) {
     ThreadedExchange{processes}.run([&](base::Exchange& exchange) {
         ThreadExecutor executor{threads};
         if (exchange.rank() == 0) {
-            simulation::Leader leader{exchange};
-            work(leader, executor);
+            simulation::shared::lead(exchange, [&](simulation::shared::Leader& leader) { work(leader, executor); });
         } else {
-            simulation::follow(exchange, executor);
+            simulation::shared::follow(exchange, executor);
         }
     });
 }

@@ -178,7 +178,8 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/fork and replay/verify",
     ("server/commands", "shared_worlds"): "system/mpi_test",
     ("server/commands", "limits parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
-    ("server/simulation", "sharing world_sharing"): "tests/determinism/shared_world_test and shared_laboratory_test",
+    ("server/simulation", "local_islands run_parameters"): "unit/simulation/world_test and scheduled_world_test",
+    ("server/simulation/shared", "part"): "tests/determinism/shared_world_test and shared_laboratory_test",
     ("server/evolution", "breeding"): "unit/evolution/next_generation_test",
     ("server/experiments", "sweep_design"): "unit/experiments/sweep_file_test",
     ("server/network", "background_queries description http http_connection messages server_metrics transport"):

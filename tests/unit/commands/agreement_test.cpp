@@ -70,11 +70,13 @@ TEST(Agreement, KeepsTheCodeOfARefusal) {
 }
 
 TEST(Agreement, AProcessThatIsAloneGetsItsOwnRefusal) {
-    Played alone{base::no_exchange()};
-    EXPECT_TRUE(agree(Result<std::string>{"text"}, alone));
-    const Result<void> result = agree(refusal(RefusalCode::NotFound, "no such file"), alone);
-    ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().message, "no such file");
+    support::ThreadedExchange{1}.run([](base::Exchange& exchange) {
+        Played alone{exchange};
+        EXPECT_TRUE(agree(Result<std::string>{"text"}, alone));
+        const Result<void> result = agree(refusal(RefusalCode::NotFound, "no such file"), alone);
+        ASSERT_FALSE(result);
+        EXPECT_EQ(result.error().message, "no such file");
+    });
 }
 
 TEST(Agreement, AnyLooksAtAllProcesses) {

@@ -30,15 +30,15 @@ class RunRecordingTest : public testing::Test {
     }
     base::Result<std::unique_ptr<RunRecording>> open() const { return RunRecording::open(path, experiment, {}); }
     /// Simulates the run, or the rest of it, in so many slices. Without close(), it ends as if it was killed.
-    void simulate(simulation::Leader& leader, base::Executor& executor, int slices, bool closes) const {
+    void simulate(simulation::IslandsMaker* maker, base::Executor& executor, int slices, bool closes) const {
         const auto opened = open();
         ASSERT_TRUE(opened) << to_text(opened.error());
         RunRecording& run = **opened;
         ASSERT_NE(run.stored(), Stored::Whole);
         simulation::World world =
             run.stored() == Stored::Part
-                ? run.continued_world(experiment, {}, executor, leader)
-                : simulation::World{experiment.parameters, *experiment.seed, {}, experiment.schedule, &leader};
+                ? run.continued_world(experiment, {}, executor, maker)
+                : simulation::World{experiment.parameters, *experiment.seed, {}, experiment.schedule, maker};
         ASSERT_TRUE(run.begin(world, {1, 2}));
         for (int slice = 0; slice < slices && world.outcome() == evolution::Outcome::Running; ++slice) {
             const std::uint64_t tick = world.moment().tick, step = run_file::ticks_per_hash;
@@ -54,8 +54,8 @@ class RunRecordingTest : public testing::Test {
         }
     }
     void simulate(std::uint32_t processes, int slices, bool closes) const {
-        support::share_worlds(processes, 1, [&](simulation::Leader& leader, base::Executor& executor) {
-            simulate(leader, executor, slices, closes);
+        support::share_worlds(processes, 1, [&](simulation::IslandsMaker& maker, base::Executor& executor) {
+            simulate(&maker, executor, slices, closes);
         });
     }
     /// Expects a file that contains the whole run and equals a new simulation.
@@ -193,8 +193,7 @@ TEST_F(RunRecordingTest, ReportsAStateThatDiffersFromTheStoredOne) {
     }
     base::InlineExecutor executor;
     const auto run = open();
-    simulation::Leader alone{base::no_exchange()};
-    simulation::World world = (*run)->continued_world(experiment, {}, executor, alone);
+    simulation::World world = (*run)->continued_world(experiment, {}, executor, nullptr);
     ASSERT_TRUE((*run)->begin(world, {1, 2}));
     base::Result<void> followed;
     for (int tick = 0; tick < 60; ++tick) {

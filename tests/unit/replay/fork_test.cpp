@@ -46,7 +46,7 @@ class ForkTest : public testing::Test {
         return fork(**origin, generation, data->file_of(name), name, {generation.value_or(0), 3}, executor);
     }
     /// From generation 1 on.
-    static void expect_history(const simulation::World::History& history, RunFile& origin, std::size_t generations) {
+    static void expect_history(const simulation::History& history, RunFile& origin, std::size_t generations) {
         ASSERT_EQ(history.size(), generations);
         for (std::size_t i = 0; i < generations; ++i) {
             EXPECT_FALSE(compare(history[i], *origin.generations().statistics_of(i + 1))) << "generation " << i + 1;
@@ -196,8 +196,8 @@ TEST_F(ForkTest, AForkHasTheHistoryAndFoundersOfItsOrigin) {
     auto recovered = recover(**file, executor);
     ASSERT_TRUE(recovered) << to_text(recovered.error());
     expect_history(recovered->world.history(), **origin, 3);
-    EXPECT_FALSE(recovered->world.founders().empty());
-    EXPECT_EQ(recovered->world.founders(), (*(*origin)->generations().beginning_of(4))->founders);
+    EXPECT_FALSE(recovered->world.bred().founders.empty());
+    EXPECT_EQ(recovered->world.bred().founders, (*(*origin)->generations().beginning_of(4))->founders);
     EXPECT_EQ((*file)->generations().last_ended(), 0u) << "of its own";
     while (!recovered->world.generation_over()) {
         recovered->world.advance_tick(executor);
@@ -264,7 +264,7 @@ TEST_F(ForkTest, AForkOfALiveWorldKeepsItsHistoryAtARestart) {
         for (std::size_t i = 0; i < forked.history().size(); ++i) {
             EXPECT_FALSE(compare(recovered->world.history()[i], forked.history()[i]));
         }
-        EXPECT_EQ(recovered->world.founders(), forked.founders());
+        EXPECT_EQ(recovered->world.bred().founders, forked.bred().founders);
     }
 }
 

@@ -28,7 +28,7 @@ class FoundersTest : public testing::Test {
         for (int tick = 0; tick < 780; ++tick) {
             run.advance(1);
             founders.resize(run.world().moment().generation);
-            founders.back() = run.world().founders();
+            founders.back() = run.world().bred().founders;
         }
         run.recorder().close_all(run.laboratory());
     }
@@ -102,11 +102,11 @@ TEST_F(FoundersTest, FoundersAreEqualAfterARestartAndInAReplay) {
         const auto file = RunFile::open_read_only(path());
         const auto checked = check(**file);
         EXPECT_TRUE(checked) << to_text(checked.error());
-        EXPECT_EQ(recover(**file, executor)->world.founders(), founders.back());
+        EXPECT_EQ(recover(**file, executor)->world.bred().founders, founders.back());
         for (std::uint64_t generation = 1; generation <= 7; ++generation) {
             const auto there = Rerun::at(**file, generation, executor);
             ASSERT_TRUE(there) << to_text(there.error());
-            EXPECT_EQ(there->world().founders(), founders[generation - 1]) << generation;
+            EXPECT_EQ(there->world().bred().founders, founders[generation - 1]) << generation;
         }
         folder.clear();
     }

@@ -70,20 +70,6 @@ TEST(CheckpointState, ContainsFitnessFromClients) {
     ASSERT_TRUE(unpack(pack(state), shapes, again));
     EXPECT_EQ(again.given_fitness, state.given_fitness);
     EXPECT_EQ(again.islands, state.islands);
-
-    const auto columns = [](std::uint32_t first, std::uint32_t second, std::size_t fitness_bytes) {
-        std::string bytes{static_cast<char>(4)};
-        for (const std::uint32_t count : {first, second}) {
-            bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-        }
-        constexpr std::size_t island_bytes = 40 + 3 * 13; // counts and fates
-        return bytes + std::string(fitness_bytes + 2 * island_bytes, '\0');
-    };
-    EXPECT_TRUE(read_columns(columns(3, 1, 32), shapes, again));
-    EXPECT_FALSE(read_columns(columns(3, 1, 24), shapes, again)) << "a number is missing";
-    EXPECT_FALSE(read_columns(columns(4, 0, 32), shapes, again)) << "more numbers than organisms";
-    EXPECT_FALSE(read_columns(std::string_view{columns(3, 1, 32)}.substr(0, 6), shapes, again)) << "cut off";
-    EXPECT_FALSE(read_columns("\x08", shapes, again)) << "an unknown flag";
 }
 
 TEST(CheckpointState, ContainsChromosomesOfAnyLength) {

@@ -101,8 +101,8 @@ TEST_F(RunFileTest, ReadsBackEverythingThatWasWritten) {
     }
     const GenerationEnded ended{
         1,
-        {{world.fitness()[0], world.islands()[0].fate().lived_ticks, world.islands()[0].fate().cause},
-         {world.fitness()[1], world.islands()[1].fate().lived_ticks, world.islands()[1].fate().cause}},
+        {{world.outcomes()[0].fitness, world.islands()[0].fate().lived_ticks, world.islands()[0].fate().cause},
+         {world.outcomes()[1].fitness, world.islands()[1].fate().lived_ticks, world.islands()[1].fate().cause}},
         world.history().back()};
     world.turn_over(executor);
     const GenerationBegun second{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};

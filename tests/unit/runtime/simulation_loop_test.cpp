@@ -648,7 +648,7 @@ TEST(SimulationThread, ReproducesTheHash) {
     SimulationThread thread{{},
                             mailbox,
                             std::make_unique<SimulationLoop>(
-                                {mailbox, demand, executor, clock},
+                                LoopTools{mailbox, demand, executor, clock},
                                 LoopOutputs{.events = [](const Laboratory&, std::vector<simulation::Event>) {},
                                             .snapshot = [](SnapshotPtr) {},
                                             .reply =

@@ -46,7 +46,7 @@ class EntitiesTest : public testing::Test {
         ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}));
     }
     World& world() { return (*laboratory.find("w"))->world; }
-    const Island& island() { return world().islands().front(); }
+    const Island& island() { return world().island(0); }
     void advance(int ticks) {
         for (int tick = 0; tick < ticks; ++tick) {
             laboratory.advance(**laboratory.find("w"), executor);
@@ -151,7 +151,7 @@ TEST_F(EntitiesTest, APlacedOrganismBreeds) {
     EXPECT_EQ(island().born().genes.cols(), 1);
     EXPECT_TRUE((island().born().genes.col(0) == genes_of(200)).all()); // the elite
     EXPECT_EQ(island().born().parents[0].first, 1u);
-    EXPECT_THAT(world().founders(island()), ElementsAre(no_founder));
+    EXPECT_THAT(world().islands().founders(0), ElementsAre(no_founder));
 }
 
 TEST_F(EntitiesTest, ARemovedOrganismIsDead) {
@@ -167,7 +167,7 @@ TEST_F(EntitiesTest, ARemovedOrganismIsDead) {
     const GenerationStatistics& statistics = world().history().back()[0];
     EXPECT_EQ(statistics.alive_count, 1u);
     EXPECT_EQ(statistics.starved_count + statistics.poisoned_count, 0u);
-    EXPECT_DOUBLE_EQ(world().fitness()[0][0], 30 * parameters.tick_s);
+    EXPECT_DOUBLE_EQ(world().outcomes()[0].fitness[0], 30 * parameters.tick_s);
 }
 
 TEST_F(EntitiesTest, RemovingTheLastOrganismEndsTheGeneration) {
@@ -362,7 +362,7 @@ TEST_F(EntitiesTest, AWorldIsRestoredWithThemBitForBit) {
             advance(1);
             restored.advance_tick(three_threads);
             ASSERT_EQ(restored.hash(), world().hash()) << "round " << round << ", tick " << tick;
-            ASSERT_EQ(restored.founders(), world().founders());
+            ASSERT_EQ(restored.bred().founders, world().bred().founders);
         }
     }
     EXPECT_GT(accepted, 60);

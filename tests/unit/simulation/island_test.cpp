@@ -1,7 +1,7 @@
 #include "server/simulation/island.h"
 
-#include "server/base/inline_executor.h"
 #include "server/simulation/fitness.h"
+#include "tests/unit/simulation/small_island.h"
 
 #include <gtest/gtest.h>
 
@@ -13,40 +13,8 @@
 namespace evod::simulation {
 namespace {
 
-evolution::BodyGenes genes_of(float normal_speed, float impulse, float body_size, float base_health, float food_radius,
-                              float poison_radius) {
-    evolution::BodyGenes genes;
-    genes << normal_speed, impulse, body_size, base_health, food_radius, poison_radius;
-    return genes;
-}
-
-/// An island of 200 × 200 px with the contents that a test sets.
-class SmallIsland : public testing::Test {
-  protected:
-    SmallIsland() {
-        parameters.island_width_px = parameters.island_height_px = 200;
-        parameters.food_count = parameters.poison_count = 0;
-    }
-    void begin(const std::vector<evolution::BodyGenes>& chromosomes) {
-        evolution::NextGeneration born;
-        born.genes = evolution::GeneMatrix(evolution::body_gene_count, static_cast<Eigen::Index>(chromosomes.size()));
-        for (std::size_t i = 0; i < chromosomes.size(); ++i) {
-            born.genes.col(static_cast<Eigen::Index>(i)) = chromosomes[i];
-        }
-        island.begin_generation(parameters, 1, std::move(born), executor);
-    }
-    void tick() { island.advance_tick(parameters, ++now, executor); }
-    float health(std::uint32_t id) { return island.living().health[island.body_of(id).value()]; }
-    std::vector<double> fitness() { return island.fitness(parameters, now, executor); }
-
-    parameters::Parameters parameters;
-    Island island{base::Seed{1}, 0};
-    std::uint32_t now = 0;
-    base::InlineExecutor executor;
-};
-
 TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
-    begin({genes_of(0, 0, 50, 20, 0, 0), genes_of(0, 0, 50, 30, 0, 0)});
+    begin({chromosome_of(0, 0, 50, 20, 0, 0), chromosome_of(0, 0, 50, 30, 0, 0)});
     tick();
     EXPECT_FLOAT_EQ(health(0), 19.9f);
     while (island.alive_count() == 2) {
@@ -66,65 +34,6 @@ TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
     EXPECT_NEAR(fitness()[1], 250 / 60.0 + 5, 1e-2);
 }
 
-TEST_F(SmallIsland, CountsPoisonAsTheCauseOnlyInTheTickOfDeath) {
-    parameters.poison_count = 2000; // everywhere
-    parameters.respawn = false;
-    parameters.poison_harm = 1e4;
-    begin({genes_of(0, 0, 100, 100, 0, 0)});
-    tick();
-    EXPECT_EQ(island.alive_count(), 0u);
-    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Poisoned);
-    EXPECT_EQ(island.fate().lived_ticks[0], 1u);
-    EXPECT_GT(island.fate().poison_eaten[0], 0u);
-    EXPECT_EQ(island.counts().poisoned_count, 1u);
-    EXPECT_EQ(island.counts().poison_eaten, island.fate().poison_eaten[0]);
-}
-
-TEST_F(SmallIsland, CountsStarvingLongAfterPoison) {
-    parameters.poison_count = 300;
-    parameters.respawn = false;
-    parameters.poison_harm = 0.01;
-    begin({genes_of(0, 0, 100, 5, 0, 0)});
-    while (island.alive_count() > 0) {
-        tick();
-    }
-    EXPECT_GT(island.fate().poison_eaten[0], 0u);
-    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
-}
-
-TEST_F(SmallIsland, LivesIfFoodRaisesHealthAboveZeroInTime) {
-    parameters.food_count = 3000;
-    parameters.health_cap_per_size = 0;
-    begin({genes_of(0, 0, 100, 0.05f, 0, 0)}); // less than the loss of a tick
-    tick();
-    ASSERT_EQ(island.alive_count(), 1u);
-    const std::uint32_t meals = island.fate().food_eaten[0];
-    EXPECT_GT(meals, 1u);
-    EXPECT_NEAR(health(0), 0.05f - 0.1f + 25 * static_cast<float>(meals), 1e-3);
-}
-
-TEST_F(SmallIsland, DiesIfHealthIsNotAboveZeroAfterATick) {
-    parameters.food_count = parameters.poison_count = 3000;
-    parameters.food_health = 0.05; // the same amount of poison: the sum stays below
-    parameters.poison_harm = 10;
-    begin({genes_of(0, 0, 100, 20, 0, 0)});
-    tick();
-    EXPECT_EQ(island.alive_count(), 0u);
-    EXPECT_GT(island.fate().food_eaten[0], 0u);
-}
-
-TEST_F(SmallIsland, LimitsHealthToTheCapOnlyAtMeals) {
-    parameters.health_cap_per_size = 3;
-    begin({genes_of(0, 0, 40, 190, 0, 0)});
-    tick();
-    EXPECT_FLOAT_EQ(health(0), 189.9f) << "not at birth";
-    parameters.food_count = 3000;
-    now = 0;
-    begin({genes_of(0, 0, 40, 190, 0, 0)});
-    tick();
-    EXPECT_FLOAT_EQ(health(0), 120);
-}
-
 TEST(LossPerTick, IsTheRateTimesTheCostsOfGenes) {
     parameters::Parameters p;
     p.normal_speed_cost = 0.1;
@@ -138,12 +47,12 @@ TEST(LossPerTick, IsTheRateTimesTheCostsOfGenes) {
         living.put(0, genes, p);
         return living.loss_per_tick.front();
     };
-    EXPECT_FLOAT_EQ(loss(genes_of(100, 100, 100, 100, 100, 100)), 0.1f);
+    EXPECT_FLOAT_EQ(loss(chromosome_of(100, 100, 100, 100, 100, 100)), 0.1f);
     const double factor =
         1 + 0.1 * (1.2 - 1) + 0.2 * (1.3 * 1.3 - 1) + 0.5 * (0.9 - 1) + 0.1 * (1.4 * 1.4 - 1) + 0.3 * (0.7 * 0.7 - 1);
-    EXPECT_FLOAT_EQ(loss(genes_of(120, 130, 50, 90, 140, 70)), static_cast<float>(0.1 * factor));
+    EXPECT_FLOAT_EQ(loss(chromosome_of(120, 130, 50, 90, 140, 70)), static_cast<float>(0.1 * factor));
     p.base_health_cost = 10;
-    EXPECT_EQ(loss(genes_of(20, 20, 100, 20, 20, 20)), 0) << "never a gain";
+    EXPECT_EQ(loss(chromosome_of(20, 20, 100, 20, 20, 20)), 0) << "never a gain";
 }
 
 TEST_F(SmallIsland, ItemsReappearAfterRespawnTime) {
@@ -151,7 +60,7 @@ TEST_F(SmallIsland, ItemsReappearAfterRespawnTime) {
     for (std::uint32_t ticks = 0; ticks <= 600; ++ticks) {
         parameters.respawn_s = ticks / 60.0;
         now = 0;
-        begin({genes_of(0, 0, 150, 100, 0, 0)});
+        begin({chromosome_of(0, 0, 150, 100, 0, 0)});
         tick();
         ASSERT_GT(island.counts().food_eaten, 0u);
         for (std::uint32_t item = 0; item < island.food().size(); ++item) {
@@ -161,7 +70,7 @@ TEST_F(SmallIsland, ItemsReappearAfterRespawnTime) {
     }
     parameters.respawn = false;
     now = 0;
-    begin({genes_of(0, 0, 150, 100, 0, 0)});
+    begin({chromosome_of(0, 0, 150, 100, 0, 0)});
     tick();
     const std::uint32_t left = island.food().present_count();
     EXPECT_LT(left, 1000u);
@@ -169,15 +78,6 @@ TEST_F(SmallIsland, ItemsReappearAfterRespawnTime) {
         tick();
     }
     EXPECT_LE(island.food().present_count(), left);
-}
-
-/// Chromosomes of a crowded island on which organisms of both kinds of items eat and some die.
-std::vector<evolution::BodyGenes> hungry() {
-    std::vector<evolution::BodyGenes> chromosomes;
-    for (int i = 0; i < 30; ++i) {
-        chromosomes.push_back(genes_of(50, 100 + static_cast<float>(i), 80, 20, 100, 100));
-    }
-    return chromosomes;
 }
 
 TEST_F(SmallIsland, FitnessIsTheWeightedSum) {
@@ -208,38 +108,6 @@ TEST_F(SmallIsland, FitnessIsTheWeightedSum) {
     }
     EXPECT_GT(food, 0u);
     EXPECT_GT(poison, 0u);
-}
-
-TEST_F(SmallIsland, HashCoversEatenItemsThatHaveAWeight) {
-    parameters.island_width_px = parameters.island_height_px = 600;
-    parameters.food_count = parameters.poison_count = 40;
-    const auto play = [&](double per_food, double per_poison) {
-        parameters.fitness_per_food = per_food;
-        parameters.fitness_per_poison = per_poison;
-        now = 0;
-        begin(hungry());
-        while (island.counts().food_eaten < 3 || island.counts().poison_eaten < 3) {
-            tick();
-        }
-        base::StateHash of_eaten;
-        for (std::uint32_t id = 0; id < 30; ++id) {
-            const std::uint32_t food = per_food != 0 ? island.fate().food_eaten[id] : 0;
-            const std::uint32_t poison = per_poison != 0 ? island.fate().poison_eaten[id] : 0;
-            if (food + poison > 0) {
-                of_eaten += base::EntityHash{6, id}.add(food, poison).finish();
-            }
-        }
-        base::StateHash rest = island.hash();
-        rest -= of_eaten;
-        return std::pair{rest, of_eaten};
-    };
-    const auto [plain, nothing] = play(0, 0);
-    EXPECT_EQ(nothing, base::StateHash{});
-    for (const auto& [food, poison] : {std::pair{1.0, 0.0}, {0.0, -1.0}, {2.0, -3.0}}) {
-        const auto [rest, of_eaten] = play(food, poison);
-        EXPECT_EQ(rest, plain) << "the weights change nothing else in a generation";
-        EXPECT_NE(of_eaten, base::StateHash{});
-    }
 }
 
 TEST_F(SmallIsland, HashCoversEverything) {
@@ -297,7 +165,7 @@ TEST_F(SmallIsland, HashCoversEverything) {
 TEST_F(SmallIsland, FindsTheBodyOfEachId) {
     std::vector<evolution::BodyGenes> chromosomes;
     for (int i = 0; i < 8; ++i) {
-        chromosomes.push_back(genes_of(0, 0, 40, i % 3 == 0 ? 0.05f : 50, 0, 0));
+        chromosomes.push_back(chromosome_of(0, 0, 40, i % 3 == 0 ? 0.05f : 50, 0, 0));
     }
     begin(chromosomes);
     tick();
@@ -316,7 +184,7 @@ TEST_F(SmallIsland, FindsTheBodyOfEachId) {
 }
 
 TEST_F(SmallIsland, OrganismsStartAtRestWithTheSizesOfTheirGenes) {
-    begin({genes_of(0, 0, 80, 50, 0, 0), genes_of(0, 0, 160, 50, 0, 0)});
+    begin({chromosome_of(0, 0, 80, 50, 0, 0), chromosome_of(0, 0, 160, 50, 0, 0)});
     ASSERT_EQ(island.bodies().size(), 2u);
     EXPECT_EQ(island.bodies().radius[0], 8);
     EXPECT_EQ(island.bodies().radius[1], 16);
@@ -326,12 +194,12 @@ TEST_F(SmallIsland, OrganismsStartAtRestWithTheSizesOfTheirGenes) {
 }
 
 TEST(GeneSum, IsTheSumOfTheGenes) {
-    EXPECT_EQ(gene_sum(genes_of(1, 2, 3, 4, 5, 6.5f)), 21.5);
+    EXPECT_EQ(gene_sum(chromosome_of(1, 2, 3, 4, 5, 6.5f)), 21.5);
 }
 
 TEST(Rastrigin, FollowsItsFormulaWithItsMaximumAt150) {
-    EXPECT_NEAR(rastrigin(genes_of(150, 150, 150, 150, 150, 150)), 0, 1e-12);
-    const evolution::BodyGenes genes = genes_of(100, 103, 151, 20, 249.5f, 175);
+    EXPECT_NEAR(rastrigin(chromosome_of(150, 150, 150, 150, 150, 150)), 0, 1e-12);
+    const evolution::BodyGenes genes = chromosome_of(100, 103, 151, 20, 249.5f, 175);
     double sum = 60;
     for (unsigned i = 0; i < 6; ++i) {
         const double x = (static_cast<double>(genes(i)) - 150) / 25;
@@ -343,7 +211,7 @@ TEST(Rastrigin, FollowsItsFormulaWithItsMaximumAt150) {
 
 TEST_F(SmallIsland, HasNoBodiesForAChromosomeFitness) {
     parameters.fitness = parameters::FitnessFunction::GeneSum;
-    begin({genes_of(1, 2, 3, 4, 5, 6), genes_of(10, 20, 30, 40, 50, 60)});
+    begin({chromosome_of(1, 2, 3, 4, 5, 6), chromosome_of(10, 20, 30, 40, 50, 60)});
     EXPECT_EQ(island.bodies().size(), 0u);
     EXPECT_EQ(fitness(), (std::vector<double>{21, 210}));
 }

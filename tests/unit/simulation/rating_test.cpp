@@ -97,7 +97,7 @@ TEST_F(RatingTest, NumbersMayComeInPartsAndBeginAgain) {
     EXPECT_EQ(gap.error().violations.at(0).allowed, "0 or 3");
     ASSERT_TRUE(rate(0, {10, 20, 30, 40}));
     ASSERT_TRUE(rate(0, {50}, 4));
-    EXPECT_THAT(world().fitness()[0], testing::ElementsAre(10, 20, 30, 40, 50));
+    EXPECT_THAT(world().given_fitness()[0], testing::ElementsAre(10, 20, 30, 40, 50));
 }
 
 TEST_F(RatingTest, WrongCommandsAreRefused) {
@@ -213,7 +213,7 @@ TEST_F(RatingTest, ARestoredWorldContinues) {
         ASSERT_TRUE(restored) << restored.error().message;
         EXPECT_EQ(again.hash(), world().hash()) << rated;
         EXPECT_EQ(again.awaits_fitness(), rated < 3);
-        EXPECT_EQ(again.fitness()[1], world().fitness()[1]);
+        EXPECT_EQ(again.given_fitness()[1], world().given_fitness()[1]);
         if (rated == 0) {
             ASSERT_TRUE(rate(1, {5, 4}));
         } else if (rated == 1) {

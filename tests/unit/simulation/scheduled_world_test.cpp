@@ -174,7 +174,7 @@ TEST_F(ScheduleTest, AForkAtAnOpeningContinuesAlike) {
 
 TEST_F(ScheduleTest, AResetRestartsTheSchedule) {
     World world = make(read(R"("mutation_chance": {"1": 0.3, "2": 0.1}, "generation_limit": 9)"));
-    const World first = world;
+    const World first = world.copy(executor);
     advance_to(world, 2, 3);
     set(world, "food_health", 30.0);
     world = world.restarted(base::Seed{5});

@@ -68,11 +68,11 @@ class WorldStateTest : public testing::Test {
         for (const Island& island : world.islands()) {
             born.push_back(island.born());
         }
-        World::History history = world.history();
+        History history = world.history();
         if (world.generation_over()) {
             history.pop_back();
         }
-        World restored{world.seed(), world.opening(), std::move(born), std::move(history), with};
+        World restored{world.seed(), world.opening(), {std::move(born), {}}, std::move(history), with};
         if (auto done = restored.restore(state, with); !done) {
             return done.error();
         }

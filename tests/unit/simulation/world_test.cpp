@@ -254,16 +254,19 @@ TEST_F(WorldTest, BreedsByShuffledFitnessAndReportsTheTrueOne) {
     run_generation(world);
     ASSERT_EQ(world.hash(), plain.hash());
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_EQ(world.fitness()[i], plain.fitness()[i]);
+        EXPECT_EQ(world.outcomes()[i].fitness, plain.outcomes()[i].fitness);
         EXPECT_EQ(world.history()[0][i].fitness_best, plain.history()[0][i].fitness_best);
     }
     // The same, step by step: shuffle, migration, breeding.
-    std::vector<std::vector<double>> fitness(world.fitness().begin(), world.fitness().end());
+    std::vector<std::vector<double>> fitness;
+    for (const IslandOutcome& outcome : world.outcomes()) {
+        fitness.push_back(outcome.fitness);
+    }
     std::vector<evolution::GeneMatrix> genes;
     std::vector<evolution::IslandPopulation> populations;
     for (std::uint32_t i = 0; i < 3; ++i) {
         evolution::shuffle_fitness(fitness[i], {.seed = base::Seed{5}, .island = i, .generation = 1}, executor);
-        EXPECT_NE(fitness[i], world.fitness()[i]);
+        EXPECT_NE(fitness[i], world.outcomes()[i].fitness);
         genes.push_back(world.islands()[i].born().genes);
     }
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -295,16 +298,16 @@ TEST_F(WorldTest, FindsFoundersAcrossIslands) {
     std::vector<evolution::BodyGenes> first;
     for (const Island& island : world.islands()) {
         for (std::uint32_t id = 0; id < 12; ++id) {
-            EXPECT_EQ(world.founders(island)[id], first.size());
+            EXPECT_EQ(world.islands().founders(island.index())[id], first.size());
             first.emplace_back(island.born().genes.col(id));
         }
     }
     bool came_from_elsewhere = false;
     const auto expect_founders = [&](const World& of) {
         for (const Island& island : of.islands()) {
-            ASSERT_EQ(of.founders(island).size(), 12u);
+            ASSERT_EQ(of.islands().founders(island.index()).size(), 12u);
             for (std::uint32_t id = 0; id < 12; ++id) {
-                const std::uint32_t founder = of.founders(island)[id];
+                const std::uint32_t founder = of.islands().founders(island.index())[id];
                 EXPECT_TRUE((island.born().genes.col(id) == first[founder]).all())
                     << "organism " << id << " of generation " << of.moment().generation;
                 came_from_elsewhere |= founder / 12 != island.index();
@@ -322,12 +325,12 @@ TEST_F(WorldTest, FindsFoundersAcrossIslands) {
     for (const Island& island : world.islands()) {
         born.push_back(island.born());
     }
-    World later{base::Seed{5}, world.opening(), std::move(born), {}, executor};
+    World later{base::Seed{5}, world.opening(), {std::move(born), {}}, {}, executor};
     later.advance_tick(executor);
     later.turn_over(executor);
-    EXPECT_TRUE(later.founders(later.islands()[0]).empty()) << "unknown without the first generation";
+    EXPECT_TRUE(later.islands().founders(0).empty()) << "unknown without the first generation";
     later = later.restarted(base::Seed{6});
-    EXPECT_EQ(later.founders(later.islands()[2])[11], 35u);
+    EXPECT_EQ(later.islands().founders(2)[11], 35u);
 }
 
 TEST_F(WorldTest, WithoutCrossoverGenesEqualTheFounders) {
@@ -353,7 +356,8 @@ TEST_F(WorldTest, WithoutCrossoverGenesEqualTheFounders) {
             world.advance_tick(executor);
             for (const Island& island : world.islands()) {
                 for (std::uint32_t id = 0; id < 50; ++id) {
-                    ASSERT_TRUE((island.born().genes.col(id) == first[world.founders(island)[id]]).all())
+                    ASSERT_TRUE(
+                        (island.born().genes.col(id) == first[world.islands().founders(island.index())[id]]).all())
                         << "organism " << id << " of generation " << world.moment().generation;
                 }
             }
@@ -373,7 +377,9 @@ TEST_F(WorldTest, ChildrenHaveHalfTheirGenesFromTheFounder) {
         world.turn_over(executor);
         const Island& island = world.islands()[0];
         for (std::uint32_t id = 0; id < 2'000; ++id) {
-            EXPECT_GE((island.born().genes.col(id) == first.col(world.founders(island)[id])).count(), 3) << id;
+            EXPECT_GE((island.born().genes.col(id) == first.col(world.islands().founders(island.index())[id])).count(),
+                      3)
+                << id;
         }
     }
 }
@@ -410,8 +416,8 @@ TEST_F(WorldTest, SurvivorsHealthHasAnErrorBelowAFiftieth) {
         }
         const double exact = 40 + double{island.born().genes(evolution::BaseHealth, id)} + 25.0 * fate.food_eaten[id] -
                              40.0 * fate.poison_eaten[id] - 240;
-        EXPECT_NEAR(world.fitness()[0][id], exact, 0.02) << "organism " << id;
-        rounded |= std::abs(world.fitness()[0][id] - exact) > 0.005;
+        EXPECT_NEAR(world.outcomes()[0].fitness[id], exact, 0.02) << "organism " << id;
+        rounded |= std::abs(world.outcomes()[0].fitness[id] - exact) > 0.005;
         ++survivors;
     }
     EXPECT_GT(survivors, 100);
@@ -419,9 +425,9 @@ TEST_F(WorldTest, SurvivorsHealthHasAnErrorBelowAFiftieth) {
 }
 
 TEST_F(WorldTest, LimitsTheStatisticsKept) {
-    EXPECT_EQ(World::history_generations_kept_of(1), World::history_generations_kept);
-    EXPECT_EQ(World::history_generations_kept_of(4096), 32u);
-    EXPECT_EQ(World::history_generations_kept_of(10 * World::history_rows_kept), 1u);
+    EXPECT_EQ(history_generations_kept_of(1), history_generations_kept);
+    EXPECT_EQ(history_generations_kept_of(4096), 32u);
+    EXPECT_EQ(history_generations_kept_of(10 * history_rows_kept), 1u);
     parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.population_size = 2;
     parameters.island_count = 2048;
@@ -440,7 +446,7 @@ TEST_F(WorldTest, AForkDropsOldStatistics) {
         world.advance_tick(executor);
     }
     world.become_fork();
-    EXPECT_EQ(world.history().size(), World::history_generations_inherited + 1) << "and its own first";
+    EXPECT_EQ(world.history().size(), history_generations_inherited + 1) << "and its own first";
     EXPECT_EQ(world.history().front().front().generation, 5u);
     world.become_fork();
     EXPECT_EQ(world.history().front().front().generation, 5u);

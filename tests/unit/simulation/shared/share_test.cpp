@@ -1,8 +1,8 @@
-#include "server/simulation/share.h"
+#include "server/simulation/shared/share.h"
 
 #include <gtest/gtest.h>
 
-namespace evod::simulation {
+namespace evod::simulation::shared {
 namespace {
 
 TEST(Shares, DivideAllIslandsIntoNearlyEqualRanges) {
@@ -24,4 +24,4 @@ TEST(Shares, DivideAllIslandsIntoNearlyEqualRanges) {
 }
 
 } // namespace
-} // namespace evod::simulation
+} // namespace evod::simulation::shared

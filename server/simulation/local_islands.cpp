@@ -1,0 +1,287 @@
+#include "server/simulation/local_islands.h"
+
+#include "server/base/assert.h"
+#include "server/evolution/fitness_shuffle.h"
+
+#include <numeric>
+#include <utility>
+
+namespace evod::simulation {
+
+std::unique_ptr<Islands> make_islands(base::Seed seed, std::uint32_t island_count, IslandsMaker* maker) {
+    if (maker != nullptr && maker->divides(island_count)) {
+        return maker->make(seed, island_count);
+    }
+    return std::make_unique<LocalIslands>(seed, base::Range{0, island_count});
+}
+
+LocalIslands::LocalIslands(base::Seed seed, base::Range indices) : seed_{seed}, first_{indices.begin} {
+    for (std::size_t index = indices.begin; index < indices.end; ++index) {
+        islands_.emplace_back(seed, static_cast<std::uint32_t>(index));
+    }
+    summaries_.resize(islands_.size());
+}
+
+template <class Body>
+void LocalIslands::for_each_island(base::Executor& executor, Body&& body) const {
+    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            body(i);
+        }
+    });
+}
+
+void LocalIslands::summarise(bool at_first_moment) {
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        const Island& island = islands_[i];
+        summaries_[i] = {.hash = island.hash(),
+                         .alive_count = island.alive_count(),
+                         .organism_count = static_cast<std::uint32_t>(island.born().genes.cols()),
+                         .is_as_begun = at_first_moment && island.is_as_begun()};
+    }
+}
+
+void LocalIslands::begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
+                                    BredIslands bred, base::Executor& executor) {
+    const bool is_drawn = bred.islands.empty();
+    EVOD_ASSERT(is_drawn || bred.islands.size() == islands_.size());
+    fitness_.clear();
+    bred.islands.resize(islands_.size());
+    for_each_island(executor, [&](std::size_t i) {
+        if (is_drawn) {
+            bred.islands[i].genes =
+                evolution::initial_population(parameters.population_size, parameters, seed_, islands_[i].index());
+        }
+        islands_[i].begin_generation(parameters, generation, std::move(bred.islands[i]), executor);
+    });
+    founders_ = std::move(bred.founders);
+    if (generation == 1) {
+        founders_.resize(islands_.size());
+        for (std::size_t i = 0; i < islands_.size(); ++i) { // all islands begin with the same number of organisms
+            const auto count = static_cast<std::size_t>(islands_[i].born().genes.cols());
+            founders_[i].resize(count);
+            std::iota(founders_[i].begin(), founders_[i].end(), static_cast<std::uint32_t>((first_ + i) * count));
+        }
+    }
+    EVOD_ASSERT(founders_.empty() || founders_.size() == islands_.size());
+    summarise(true);
+}
+
+void LocalIslands::restore(const parameters::Parameters& begun_with, const WorldState& state,
+                           base::Executor& executor) {
+    const auto tick = static_cast<std::uint32_t>(state.moment.generation_tick);
+    for_each_island(executor,
+                    [&](std::size_t i) { islands_[i].restore(state.islands[i], tick, begun_with, executor); });
+    for (std::size_t i = 0; i < founders_.size(); ++i) {
+        founders_[i].resize(islands_[i].fate().cause.size(), no_founder);
+    }
+    fitness_ = state.given_fitness;
+    if (fitness_.empty() && !state.ended.empty()) {
+        find_fitness(state.parameters.active, tick, executor);
+    }
+    summarise(tick == 0);
+}
+
+std::uint32_t LocalIslands::advance(const parameters::Parameters& parameters, GenerationTicks ticks,
+                                    base::Executor& executor, std::vector<DiedOut>& died_out) {
+    std::uint32_t tick = ticks.first;
+    while (advance_tick(parameters, tick, executor, died_out) > 0 && tick < ticks.last) {
+        ++tick;
+    }
+    summarise(false);
+    return tick;
+}
+
+std::uint64_t LocalIslands::advance_tick(const parameters::Parameters& parameters, std::uint32_t tick,
+                                         base::Executor& executor, std::vector<DiedOut>& died_out) {
+    died_out_.assign(islands_.size(), 0);
+    for_each_island(executor, [&](std::size_t i) {
+        if (islands_[i].alive_count() == 0) {
+            islands_[i].skip_tick(tick);
+            return;
+        }
+        islands_[i].advance_tick(parameters, tick, executor);
+        died_out_[i] = islands_[i].alive_count() == 0;
+    });
+    std::uint64_t alive = 0;
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        alive += islands_[i].alive_count();
+        if (died_out_[i]) {
+            died_out.push_back({islands_[i].index(), tick});
+        }
+    }
+    return alive;
+}
+
+void LocalIslands::find_fitness(const parameters::Parameters& parameters, std::uint32_t tick,
+                                base::Executor& executor) {
+    fitness_.clear();
+    for (const Island& island : islands_) {
+        fitness_.push_back(island.fitness(parameters, tick, executor));
+    }
+}
+
+std::vector<GenerationStatistics> LocalIslands::end_generation(const parameters::Parameters& parameters,
+                                                               std::uint32_t tick,
+                                                               std::span<const std::vector<double>> given,
+                                                               base::Executor& executor) {
+    if (given.empty()) {
+        find_fitness(parameters, tick, executor);
+    } else {
+        fitness_.assign(given.begin(), given.end());
+    }
+    std::vector<GenerationStatistics> statistics;
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        statistics.push_back(generation_statistics(islands_[i], parameters, fitness_[i], executor));
+    }
+    return statistics;
+}
+
+void LocalIslands::turn_over(const parameters::Parameters& parameters, std::uint64_t generation,
+                             std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
+                             const std::function<void(std::vector<Migrants>&)>& carry) {
+    const auto key_of = [&](std::size_t i) -> evolution::BreedingKey {
+        return {.seed = seed_, .island = islands_[i].index(), .generation = generation};
+    };
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        if (parameters.shuffle_fitness) {
+            evolution::shuffle_fitness(fitness_[i], key_of(i), executor);
+        }
+        islands_[i].free_weights();
+    }
+    std::vector<evolution::GeneMatrix> with_migrants;
+    if (!routes.empty()) {
+        with_migrants = migrated(parameters, generation, routes, carry);
+    }
+    BredIslands bred{.islands = std::vector<evolution::NextGeneration>(islands_.size()),
+                     .founders = std::move(founders_)};
+    for_each_island(executor, [&](std::size_t i) {
+        const evolution::GeneMatrix& born = islands_[i].born().genes;
+        const evolution::GeneMatrix& genes = routes.empty() ? born : with_migrants[i];
+        evolution::NextGeneration& next = bred.islands[i];
+        next =
+            evolution::next_generation(fitness_[i], genes, parameters, parameters.population_size, key_of(i), executor);
+        next.account = evolution::account_for(born, genes, next.genes, next.parents, executor);
+    });
+    for (std::size_t i = 0; i < bred.founders.size(); ++i) {
+        std::vector<std::uint32_t> founders;
+        founders.reserve(bred.islands[i].parents.size());
+        for (const evolution::Parents& parents : bred.islands[i].parents) {
+            founders.push_back(bred.founders[i][parents.first]);
+        }
+        bred.founders[i] = std::move(founders);
+    }
+    begin_generation(parameters, generation + 1, std::move(bred), executor);
+}
+
+std::vector<evolution::GeneMatrix> LocalIslands::migrated(const parameters::Parameters& parameters,
+                                                          std::uint64_t generation,
+                                                          std::span<const evolution::MigrationRoute> routes,
+                                                          const std::function<void(std::vector<Migrants>&)>& carry) {
+    std::vector<evolution::GeneMatrix> genes;
+    for (const Island& island : islands_) {
+        genes.push_back(island.born().genes);
+    }
+    std::vector<evolution::Ranking> rankings(fitness_.begin(), fitness_.end());
+    std::vector<Migrants> migrants(routes.size());
+    for (std::size_t r = 0; r < routes.size(); ++r) {
+        if (!holds(routes[r].from)) {
+            continue;
+        }
+        const std::size_t from = routes[r].from - first_;
+        const auto leaving = evolution::emigrants(routes[r], rankings[from], parameters, seed_, generation);
+        migrants[r].genes.resize(genes[from].rows(), std::ssize(leaving));
+        for (const std::uint32_t organism : leaving) {
+            migrants[r].genes.col(std::ssize(migrants[r].fitness)) = genes[from].col(organism);
+            migrants[r].fitness.push_back(fitness_[from][organism]);
+            migrants[r].founders.push_back(founders_.empty() ? no_founder : founders_[from][organism]);
+        }
+    }
+    carry(migrants);
+    std::vector<std::uint32_t> replaced;              // on the island `to` of the previous route
+    for (std::size_t r = 0; r < routes.size(); ++r) { // ordered by (to, from)
+        const evolution::MigrationRoute& route = routes[r];
+        if (!holds(route.to)) {
+            continue;
+        }
+        const std::size_t to = route.to - first_;
+        if (r == 0 || routes[r - 1].to != route.to) {
+            replaced = evolution::replaced_first(route.to, rankings[to], parameters, seed_, generation);
+        }
+        for (std::uint32_t i = 0; i < route.count; ++i) {
+            const std::uint32_t place = replaced[route.first_place + i];
+            genes[to].col(place) = migrants[r].genes.col(i);
+            fitness_[to][place] = migrants[r].fitness[i];
+            if (!founders_.empty()) {
+                founders_[to][place] = migrants[r].founders[i];
+            }
+        }
+    }
+    return genes;
+}
+
+EntityIds LocalIslands::place(const PlaceEntities& command, const parameters::Parameters& parameters,
+                              std::uint32_t tick) {
+    Island& island = islands_[command.island - first_];
+    EntityIds ids;
+    for (const PlaceEntities::Item& item : command.items) {
+        (item.kind == ItemKind::Food ? ids.food : ids.poison)
+            .push_back(island.place(item.kind, {physics::to_units(item.x_px), physics::to_units(item.y_px)}));
+    }
+    std::vector<Island::NewOrganism> organisms;
+    for (const PlaceEntities::Organism& organism : command.organisms) {
+        organisms.push_back(
+            {{physics::to_units(organism.x_px), physics::to_units(organism.y_px)}, organism.genes, tick});
+    }
+    if (!organisms.empty()) {
+        ids.organisms.resize(organisms.size());
+        std::iota(ids.organisms.begin(), ids.organisms.end(), island.place(organisms, parameters));
+        if (!founders_.empty()) {
+            founders_[command.island - first_].resize(island.fate().cause.size(), no_founder);
+        }
+    }
+    summarise(tick == 0);
+    return ids;
+}
+
+void LocalIslands::remove(const RemoveEntities& command, std::uint32_t tick) {
+    Island& island = islands_[command.island - first_];
+    for (const std::uint32_t item : command.food) {
+        island.remove(ItemKind::Food, item);
+    }
+    for (const std::uint32_t item : command.poison) {
+        island.remove(ItemKind::Poison, item);
+    }
+    for (const std::uint32_t organism : command.organisms) {
+        island.remove_organism(organism, tick);
+    }
+    summarise(tick == 0);
+}
+
+BredIslands LocalIslands::bred() const {
+    BredIslands bred{.islands = {}, .founders = founders_};
+    for (const Island& island : islands_) {
+        bred.islands.push_back(island.bred());
+    }
+    for (std::size_t i = 0; i < founders_.size(); ++i) {
+        bred.founders[i].resize(islands_[i].bred_count());
+    }
+    return bred;
+}
+
+std::vector<IslandOutcome> LocalIslands::outcomes() const {
+    std::vector<IslandOutcome> outcomes;
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        const Fate& fate = islands_[i].fate();
+        outcomes.push_back({fitness_[i], fate.lived_ticks, fate.cause});
+    }
+    return outcomes;
+}
+
+std::vector<IslandState> LocalIslands::states(base::Executor& executor) const {
+    std::vector<IslandState> states(islands_.size());
+    for_each_island(executor, [&](std::size_t i) { states[i] = islands_[i].state(executor); });
+    return states;
+}
+
+} // namespace evod::simulation

@@ -1,0 +1,166 @@
+// Orders: what rank 0 has the other processes do with their islands of a world, and the fields of what they send each
+// other.
+//
+// The fields of each struct are declared once, for packing and for unpacking (base/packing.h); a struct of numbers needs no
+// declaration. IslandState has bytes of its own (state_bytes.h).
+#pragma once
+
+#include "server/base/packing.h"
+#include "server/simulation/local_islands.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace evod::base {
+
+template <>
+struct Fields<evolution::GeneMatrix> {
+    static void visit(auto& genes, auto&& each) {
+        auto rows = static_cast<std::int64_t>(genes.rows()), columns = static_cast<std::int64_t>(genes.cols());
+        each(rows, columns);
+        if constexpr (!std::is_const_v<std::remove_reference_t<decltype(genes)>>) {
+            genes.resize(rows, columns);
+        }
+        each(std::span{genes.data(), static_cast<std::size_t>(genes.size())});
+    }
+};
+template <>
+struct Fields<evolution::NextGeneration> {
+    static void visit(auto& generation, auto&& each) {
+        each(generation.genes, generation.parents, generation.elite_count, generation.survivor_count,
+             generation.clamped_count, generation.account);
+    }
+};
+template <>
+struct Fields<simulation::GenerationStatistics> {
+    static void visit(auto& statistics, auto&& each) {
+        for_each_number(statistics, [&](const char*, auto& number) { each(number); });
+        each(statistics.genes, statistics.account);
+    }
+};
+template <>
+struct Fields<simulation::IslandOutcome> {
+    static void visit(auto& outcome, auto&& each) { each(outcome.fitness, outcome.lived_ticks, outcome.cause); }
+};
+template <>
+struct Fields<simulation::BredIslands> {
+    static void visit(auto& bred, auto&& each) { each(bred.islands, bred.founders); }
+};
+template <>
+struct Fields<simulation::Migrants> {
+    static void visit(auto& migrants, auto&& each) { each(migrants.fitness, migrants.founders, migrants.genes); }
+};
+template <>
+struct Fields<simulation::EntityIds> {
+    static void visit(auto& ids, auto&& each) { each(ids.food, ids.poison, ids.organisms); }
+};
+// Commands without the names of their worlds.
+template <>
+struct Fields<simulation::PlaceEntities> {
+    static void visit(auto& command, auto&& each) { each(command.island, command.items, command.organisms); }
+};
+template <>
+struct Fields<simulation::PlaceEntities::Organism> {
+    static void visit(auto& organism, auto&& each) { each(organism.x_px, organism.y_px, organism.genes); }
+};
+template <>
+struct Fields<simulation::RemoveEntities> {
+    static void visit(auto& command, auto&& each) {
+        each(command.island, command.food, command.poison, command.organisms);
+    }
+};
+
+} // namespace evod::base
+
+namespace evod::simulation::shared {
+
+/// Creates the islands of a new world. Scattered, if is_given: their organisms.
+struct Begin {
+    base::Seed seed;
+    std::uint64_t generation;
+    parameters::Parameters parameters; // as after UseParameters
+    bool is_given;                     // otherwise the organisms are drawn from the seed
+};
+/// The orders that follow use these parameters.
+struct UseParameters {
+    parameters::Parameters parameters;
+};
+/// Islands::restore(). Scattered: the states of the islands.
+struct Restore {
+    std::uint32_t tick;                // of the generation
+    parameters::Parameters parameters; // those of the state
+};
+struct Advance {
+    GenerationTicks ticks;
+};
+/// Scattered, if is_given: the fitness from clients.
+struct EndGeneration {
+    std::uint32_t tick;
+    bool is_given;
+};
+struct TurnOver {
+    std::uint64_t generation;
+    std::vector<evolution::MigrationRoute> routes;
+    static void visit(auto& order, auto&& each) { each(order.generation, order.routes); }
+};
+struct Place {
+    PlaceEntities command;
+    std::uint32_t tick;
+    static void visit(auto& order, auto&& each) { each(order.command, order.tick); }
+};
+struct Remove {
+    RemoveEntities command;
+    std::uint32_t tick;
+    static void visit(auto& order, auto&& each) { each(order.command, order.tick); }
+};
+/// Sends islands to rank 0.
+struct Bring {
+    struct Island {
+        std::uint32_t index;
+        bool with_organisms; // rank 0 does not have the organisms of this generation yet
+    };
+    std::vector<Island> islands;
+    static void visit(auto& order, auto&& each) { each(order.islands); }
+};
+// The functions of Islands with these names.
+struct Bred {};
+struct Outcomes {};
+struct States {};
+struct LiveStatisticsOfAll {};
+/// The other processes follow no more.
+struct End {};
+
+using Order = std::variant<Begin, UseParameters, Restore, Advance, EndGeneration, TurnOver, Place, Remove, Bring, Bred,
+                           Outcomes, States, LiveStatisticsOfAll, End>;
+
+struct Message {
+    std::vector<std::uint64_t> dropped; // worlds that have ended since the previous message
+    std::uint64_t world = 0;            // the world that the order is about; for End, none
+    Order order;
+    static void visit(auto& message, auto&& each) { each(message.dropped, message.world, message.order); }
+};
+
+/// What every process learns about the islands of another one.
+struct Meeting {
+    bool fits = true;                   // memory suffices
+    std::uint32_t tick = 0;             // Advance: the last tick that was performed
+    std::vector<DiedOut> died_out = {}; // Advance
+    EntityIds placed = {};              // Place, from the process that has the island
+    std::vector<IslandSummary> summaries = {};
+    static void visit(auto& meeting, auto&& each) {
+        each(meeting.fits, meeting.tick, meeting.died_out, meeting.placed, meeting.summaries);
+    }
+};
+/// An island as rank 0 gets it.
+struct SentIsland {
+    std::vector<evolution::NextGeneration> bred; // one element, or none if rank 0 has the organisms
+    std::vector<std::uint32_t> founders;
+    std::string state; // state_bytes.h
+    static void visit(auto& island, auto&& each) { each(island.bred, island.founders, island.state); }
+};
+
+} // namespace evod::simulation::shared
