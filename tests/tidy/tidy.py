@@ -181,7 +181,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/simulation", "sharing world_sharing"): "tests/determinism/shared_world_test and shared_laboratory_test",
     ("server/evolution", "breeding"): "unit/evolution/next_generation_test",
     ("server/experiments", "sweep_design"): "unit/experiments/sweep_file_test",
-    ("server/network", "background_queries description http http_connection messages random_ids server_metrics transport"):
+    ("server/network", "description http http_connection messages random_ids server_metrics transport"):
         "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
     ("server/network", "session_sending"): "unit/network/session_test",
     ("server/network", "commands subscription_requests"): "unit/network/dispatcher_test",
