@@ -1,5 +1,5 @@
 // Replies: what the simulation thread computes for its mail (mail.h), and what background jobs compute, as data on the way
-// to the network thread, where Dispatcher::on_done() completes the answer to the client.
+// to the network thread, where Dispatcher::deliver() completes the answer to the client.
 //
 // Threads      plain data; one thread at a time owns it.
 #pragma once
