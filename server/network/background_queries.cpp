@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <ranges>
 #include <utility>
 
 namespace evod::network {
@@ -143,9 +142,8 @@ void BackgroundQueries::ask_breeding(Session& session, const v1::Request& reques
 void BackgroundQueries::begin_next_breeding() {
     while (running_breedings_.size() < breedings_at_once) {
         const auto next = std::ranges::find_if(waiting_breedings_, [&](const WaitingBreeding& breeding) {
-            return std::ranges::none_of(running_breedings_ | std::views::values, [&](const RunningBreeding& running) {
-                return running.session == breeding.session;
-            });
+            return std::ranges::none_of(running_breedings_,
+                                        [&](const auto& item) { return item.second.session == breeding.session; });
         });
         if (next == waiting_breedings_.end()) {
             return;

@@ -13,8 +13,6 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -76,15 +74,24 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
 
 Server::Server(ServerOptions options)
     : options_{std::move(options)}
-    , send_memory_{client_buffer_bytes_max, [this] { asio::post(context_, [this] { evict_sessions(); }); }}
+    , send_memory_{client_buffer_bytes_max,
+                   [this] {
+                       asio::post(context_, [this] {
+                           table_.evict();
+                           // The closed sessions release their memory in handlers that are already posted. rearm() runs
+                           // after these handlers.
+                           asio::post(context_, [this] { send_memory_.rearm(); });
+                       });
+                   }}
     , executor_{runtime::make_executor(options_.threads)}
     , simulations_{std::holds_alternative<ReplayedRun>(options_.worlds)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
-    , streams_{sessions_, simulations_}
+    , table_{host_, options_.session_bounds}
+    , streams_{table_.sessions(), simulations_}
     , dispatcher_{context_,
                   simulations_,
                   outbox_,
-                  sessions_,
+                  table_.sessions(),
                   streams_,
                   host_,
                   [this] { stop(); },
@@ -97,10 +104,8 @@ Server::Server(ServerOptions options)
         return gate_->admit(token, address, access::Gate::Clock::now());
     };
     host_.ended = [this](Session& session) {
-        --connections_;
-        ++ended_since_trim_;
         dispatcher_.forget(session);
-        sessions_.erase(session.number());
+        table_.forget(session);
         streams_.forget(session);
     };
 }
@@ -187,9 +192,9 @@ bool Server::run() {
     });
 
     wait_for_signal();
-    start_housekeeping();
+    housekeeping_.start(*gate_);
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) {
-        accepted(std::make_unique<Transport>(std::move(socket), tls_.get()));
+        table_.accept(std::make_unique<Transport>(std::move(socket), tls_.get()));
     }),
                    detached);
     if (http_) {
@@ -244,129 +249,6 @@ void Server::stop() {
     asio::post(context_, [this] { begin_shutdown(); });
 }
 
-void Server::start_housekeeping() {
-    checked_at_ = clock_.now();
-    schedule_housekeeping();
-}
-
-void Server::schedule_housekeeping() {
-    housekeeping_timer_.expires_after(housekeeping_interval);
-    housekeeping_timer_.async_wait([this](boost::system::error_code error) {
-        if (error) {
-            return;
-        }
-        check_tokens();
-        // If the timer fired late, the server itself was busy. That time does not count against the clients.
-        const auto now = clock_.now();
-        const auto watched =
-            std::min<runtime::Clock::duration>(now - std::exchange(checked_at_, now), 2 * housekeeping_interval);
-        for (const auto& [number, session] : sessions_) {
-            session->check_progress(watched);
-        }
-        trim_heap(now);
-        schedule_housekeeping();
-    });
-}
-
-void Server::trim_heap(runtime::Clock::time_point now) {
-    // Answered requests and ended sessions leave fragmented free memory, which malloc does not return to the system by
-    // itself.
-    const std::uint64_t answered = host_.traffic.sent_control_bytes.value();
-    if (now < trim_at_ || (ended_since_trim_ == 0 && answered - answered_at_trim_ < answered_to_trim_bytes)) {
-        return;
-    }
-    ::malloc_trim(0);
-    trim_at_ = now + trim_every;
-    ended_since_trim_ = 0;
-    answered_at_trim_ = answered;
-}
-
-void Server::check_tokens() {
-    if (!gate_->refresh()) {
-        return;
-    }
-    if (gate_->file_problem()) {
-        log::error("{}; new connections are refused until this is fixed", gate_->file_problem()->message);
-    }
-    // fail() may remove sessions from the table, so the loop iterates over a copy.
-    const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
-    for (const auto& [number, session] : sessions) {
-        if (session->greeted() && !gate_->file_problem() && !gate_->is_still_valid(session->visitor())) {
-            session->fail(refusal(base::RefusalCode::Unauthenticated,
-                                  "the token has been revoked: ask the operator of the server for a new one",
-                                  base::Reason::TokenRevoked));
-        }
-    }
-}
-
-void Server::evict_sessions() {
-    std::vector<std::pair<std::size_t, SessionPtr>> most;
-    for (const auto& [number, session] : sessions_) {
-        most.emplace_back(session->held_bytes(), session);
-    }
-    std::ranges::sort(most, std::greater{}, [](const auto& item) { return item.first; });
-    std::size_t excess = send_memory_.excess();
-    for (const auto& [bytes, session] : most) {
-        if (excess == 0 || bytes == 0) {
-            break;
-        }
-        session->evict();
-        excess -= std::min(excess, bytes);
-    }
-    // The closed sessions release their memory in handlers that are already posted. rearm() runs after these handlers.
-    asio::post(context_, [this] { send_memory_.rearm(); });
-}
-
-void Server::accepted(std::unique_ptr<Transport> transport) {
-    const auto session = std::make_shared<Session>(std::move(transport), host_, ++session_number_);
-    ++connections_;
-    host_.traffic.connections.add();
-    if (going_away_) {
-        return session->start(refusal(base::RefusalCode::Unavailable,
-                                      "the server is shutting down: connect again after the restart",
-                                      base::Reason::ServerGoingAway));
-    }
-    const auto has_same_address = [&](const auto& other) {
-        return other.second->address_prefix() == session->address_prefix();
-    };
-    const SessionBounds& bounds = options_.session_bounds;
-    const bool all_full = sessions_.size() >= bounds.sessions_max;
-    const bool address_full = std::ranges::count_if(sessions_, has_same_address) >= bounds.sessions_per_address_max;
-    if (all_full || address_full) {
-        limit_counters_.met(address_full ? Limit::SessionsPerAddress : Limit::Sessions);
-        // A silent connection must not keep other clients out: the oldest session without a Hello is closed.
-        const auto silent = std::ranges::find_if(sessions_, [&](const auto& other) {
-            return !other.second->greeted() && (!address_full || has_same_address(other));
-        });
-        const bool may_get_goodbye = connections_ - sessions_.size() <= farewells_max;
-        if (silent == sessions_.end()) {
-            if (may_get_goodbye) {
-                session->start(refusal(base::RefusalCode::ResourceExhausted,
-                                       address_full ? "there are " + std::to_string(bounds.sessions_per_address_max) +
-                                                          " sessions from this address: end one of them first"
-                                                    : "the server has " + std::to_string(bounds.sessions_max) +
-                                                          " sessions: try again when one has ended",
-                                       base::Reason::SessionsMax));
-            } else {
-                --connections_; // the connection is closed without a Goodbye
-            }
-            return;
-        }
-        const SessionPtr first = silent->second;
-        sessions_.erase(silent);
-        if (may_get_goodbye) {
-            first->fail(refusal(
-                base::RefusalCode::ResourceExhausted,
-                "connection dropped to make room, no Hello was received: connect again and send a Hello at once",
-                base::Reason::SessionsMax));
-        } else {
-            first->close();
-        }
-    }
-    sessions_.emplace(session->number(), session);
-    session->start();
-}
-
 void Server::deliver() {
     runtime::Outbox::Taken taken = outbox_.take();
     if (taken.dropped_events > 0) {
@@ -394,7 +276,8 @@ void Server::begin_shutdown() {
     if (std::exchange(going_away_, true)) {
         return;
     }
-    housekeeping_timer_.cancel();
+    housekeeping_.stop();
+    table_.refuse_all();
     listener_->close();
     if (http_) {
         http_->close();

@@ -5,16 +5,17 @@
 
 #include "server/network/dispatcher.h"
 #include "server/network/first_world.h"
+#include "server/network/housekeeping.h"
 #include "server/network/http.h"
 #include "server/network/listener.h"
 #include "server/network/server_options.h"
+#include "server/network/session_table.h"
 #include "server/replay/archive.h"
 #include "server/runtime/processes.h"
 #include "server/runtime/simulations.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 
 #include <memory>
 #include <optional>
@@ -60,14 +61,6 @@ class Server {
     base::Result<void> open_worlds(const LiveWorlds& worlds);
     base::Result<void> open_replay(const ReplayedRun& run);
     base::Result<void> open_http();
-    /// Starts the periodic checks: revoked tokens, stalled clients, free memory.
-    void start_housekeeping();
-    void schedule_housekeeping();
-    void trim_heap(runtime::Clock::time_point now);
-    void check_tokens();
-    /// Closes the sessions that use the most memory until all sessions together are within the limit of SendMemory.
-    void evict_sessions();
-    void accepted(std::unique_ptr<Transport> transport);
     void deliver();
     /// Sends the next islands of the newest snapshots, then lets the thread do other work.
     void send_snapshots();
@@ -89,7 +82,6 @@ class Server {
 
     std::unique_ptr<asio::ssl::context> tls_; // nullptr: no TLS
     std::optional<access::Gate> gate_;
-    asio::steady_timer housekeeping_timer_{context_};
 
     std::unique_ptr<base::Executor> executor_;
     std::unique_ptr<replay::Archive> archive_;  // nullptr: runs are not stored
@@ -100,13 +92,9 @@ class Server {
     runtime::Outbox outbox_;
     metrics::Worlds worlds_counted_;
 
-    Sessions sessions_;
-    std::uint64_t session_number_ = 0;
-    runtime::Clock::time_point checked_at_, trim_at_;
-    std::size_t ended_since_trim_ = 0;   // number of sessions
-    std::uint64_t answered_at_trim_ = 0; // number of bytes
-    std::size_t connections_ = 0;        // sessions, and refused connections that are receiving a Goodbye
     SessionHost host_{limit_counters_, send_memory_};
+    SessionTable table_;
+    Housekeeping housekeeping_{context_, table_, host_};
     Streams streams_;
     bool sends_snapshots_ = false; // a call of send_snapshots() is posted
     Dispatcher dispatcher_;

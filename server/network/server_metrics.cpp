@@ -164,7 +164,7 @@ v1::Metrics Server::metrics() {
                 "Time for which the simulation has waited for the other processes and for what they send")
         .add(processes != nullptr ? processes->exchange_s() : 0);
     add_queues(all, simulations_.fill(), outbox_.fill());
-    add_sessions(all, sessions_, options_.session_bounds.sessions_max);
+    add_sessions(all, table_.sessions(), options_.session_bounds.sessions_max);
     add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
         .add(number(gate_->failed_login_count()));
     add_gauge(all, "evod_client_buffer_bytes",
@@ -257,7 +257,7 @@ base::Result<void> Server::open_http() {
     service.admit = host_.admit;
     service.session = [this](std::unique_ptr<Transport> transport) {
         host_.traffic.websockets.add();
-        accepted(std::move(transport));
+        table_.accept(std::move(transport));
     };
     auto http = Http::open(context_, options->bind_address, options->port, std::move(service));
     if (!http) {

@@ -1,7 +1,7 @@
 // Mail: the entries of the mailbox, as data: commands, queries and requests for replays on their way to the simulation
 // thread. replies.h contains the ways back.
 //
-// Way          network thread → mailbox → simulation thread, which computes the reply → outbox → Dispatcher::on_done()
+// Way          network thread → mailbox → simulation thread, which computes the reply → outbox → Dispatcher::deliver()
 //              on the network thread. If runs are stored, the reply to a command waits there for a receipt: the storage
 //              thread writes the journal.
 // Threads      plain data; one thread at a time owns it. A v1::Request is shared, and constant.

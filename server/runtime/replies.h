@@ -1,5 +1,5 @@
 // Replies: what the simulation thread computes for its mail (mail.h), and what background jobs compute, as data on the way
-// to the network thread, where Dispatcher::on_done() completes the answer to the client.
+// to the network thread, where Dispatcher::deliver() completes the answer to the client.
 //
 // A reply with a ticket waits for the disk: the network thread holds it until the storage thread has given the receipt
 // with this ticket (unwritten_replies.h).

@@ -62,7 +62,11 @@ bool Simulations::try_send(ReplayMail mail) {
         return mailbox_of(world).try_push(std::move(mail));
     }
     const std::uint64_t session = mail.session;
-    return mailbox_of(with_run).try_push(FindRun{with_run, session, std::move(mail)});
+    if (!mailbox_of(with_run).try_push(FindRun{with_run, session, std::move(mail)})) {
+        return false;
+    }
+    ++finding_[session];
+    return true;
 }
 
 void Simulations::set_demand(WorldDemands worlds, bool events_wanted) {
@@ -83,6 +87,7 @@ void Simulations::set_demand(WorldDemands worlds, bool events_wanted) {
 }
 
 void Simulations::forget(std::uint64_t session) {
+    finding_.erase(session);
     replays_.mailbox.push(SessionEnded{session});
     if (!shows_file_) {
         live_.mailbox.push(SessionEnded{session});
@@ -105,6 +110,13 @@ std::optional<Answer> Simulations::pass_on(Reply reply) {
             return std::nullopt;
         }
         if (auto* replay = std::get_if<ReplayMail>(&found->mail.purpose)) {
+            const auto finding = finding_.find(replay->session);
+            if (finding == finding_.end()) {
+                return std::nullopt; // the session has ended
+            }
+            if (--finding->second == 0) {
+                finding_.erase(finding);
+            }
             if (!found->run && std::holds_alternative<OpenReplay>(replay->request)) {
                 return ReplayDone{std::move(*replay), found->run.error()};
             }

@@ -17,7 +17,9 @@
 #include "server/runtime/simulation_thread.h"
 #include "server/runtime/unwritten_replies.h"
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -78,6 +80,8 @@ class Simulations {
     std::unique_ptr<base::Executor> replay_executor_;
     Part live_, replays_;
     UnwrittenReplies unwritten_;
+    // By session: the requests for replays that wait for a run. A session that has ended has none.
+    std::map<std::uint64_t, std::size_t> finding_;
 };
 
 } // namespace evod::runtime

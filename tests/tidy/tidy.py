@@ -182,11 +182,11 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/simulation/shared", "part"): "tests/determinism/shared_world_test and shared_laboratory_test",
     ("server/evolution", "breeding"): "unit/evolution/next_generation_test",
     ("server/experiments", "sweep_design"): "unit/experiments/sweep_file_test",
-    ("server/network", "background_queries description http http_connection messages server_metrics transport"):
+    ("server/network", "description http http_connection messages server_metrics transport"):
         "system.protocol, system.breeding, system.metrics, system.export and system.access: they need a running server",
     ("server/network", "session_sending"): "unit/network/session_test",
     ("server/network", "commands subscription_requests"): "unit/network/dispatcher_test",
-    ("server/network", "heartbeat listener"): "unit/network/server_test and system.metrics",
+    ("server/network", "heartbeat housekeeping listener"): "unit/network/server_test, system.metrics and system.access",
     ("server/physics", "motion_kernels"): "unit/physics/step_test and tests/determinism",
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker"):
         "unit/recording/storage_thread_test and recorder_test",

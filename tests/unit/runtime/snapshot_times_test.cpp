@@ -51,6 +51,8 @@ TEST_F(Times, SnapshotsFollowAGridAtTheWantedRate) {
     }
     EXPECT_NEAR(taken, 100, 1);
     clock.advance(1s);
+    EXPECT_TRUE(take_if_due()) << "the last tick";
+    clock.advance(1s);
     EXPECT_FALSE(take_if_due()) << "the world has not changed";
 }
 
