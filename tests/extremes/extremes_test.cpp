@@ -159,7 +159,7 @@ class Extreme {
         for (std::uint32_t i = 0; i < world_.island_count(); ++i) {
             look_at(world_.island(i));
         }
-        for (const simulation::LiveStatistics& live : world_.live_statistics()) {
+        for (const simulation::LiveStatistics& live : world_.islands().live_statistics()) {
             expect_finite("health_mean", live.health_mean);
         }
         if (!world_.history().empty()) {

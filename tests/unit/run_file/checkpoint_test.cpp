@@ -384,7 +384,7 @@ TEST_F(CheckpointTest, ARunMayBeginWithOne) {
             EXPECT_EQ(recovered->world.hash(), run.world().hash());
         }
         expect_agrees(**file, 0);
-        auto again = recover(**file, executor)->world;
+        simulation::World again = std::move(recover(**file, executor)->world);
         for (int tick = 0; tick < 200; ++tick) {
             again.advance_tick(executor);
             run.world().advance_tick(executor);
