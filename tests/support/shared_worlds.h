@@ -17,7 +17,7 @@ namespace evod::support {
 inline void share_worlds(std::uint32_t processes, std::size_t threads,
                          const std::function<void(simulation::shared::Leader&, base::Executor&)>& work) {
     ThreadedExchange{processes}.run([&](base::Exchange& exchange) {
-        ThreadExecutor executor{threads};
+        jobs::ThreadPool executor{threads};
         if (exchange.rank() == 0) {
             simulation::shared::lead(exchange, [&](simulation::shared::Leader& leader) { work(leader, executor); });
         } else {

@@ -53,14 +53,26 @@ TEST(Simulations, RequestsForReplaysGetTheRunFirst) {
     EXPECT_EQ(std::get<ReplayMail>(mail[0]).run->until.tick, 4u);
     EXPECT_EQ(std::get<ReplayMail>(mail[1]).run->run.run_id(), (simulation::RunId{1, 2}));
     // Without a run, a replay cannot be opened, but it can still be moved.
-    const base::Refusal none = base::refusal(base::RefusalCode::NotFound, "none");
-    const auto refused = simulations.pass_on(
-        RunFound{{.world = "w", .purpose = ReplayMail{.request = OpenReplay{.world = "w", .at = {}}}}, none});
+    const auto pass_on_refusal = [&](ReplayMail mail_of_client) {
+        EXPECT_TRUE(simulations.try_send(std::move(mail_of_client)));
+        const auto wanted = std::get<FindRun>(sent("w").at(0));
+        return simulations.pass_on(RunFound{wanted, base::refusal(base::RefusalCode::NotFound, "none")});
+    };
+    const auto refused = pass_on_refusal({.request = OpenReplay{.world = "w", .at = {}}, .session = 1});
     ASSERT_TRUE(refused);
     EXPECT_EQ(std::get<ReplayDone>(*refused).world.error().message, "none");
-    EXPECT_FALSE(simulations.pass_on(
-        RunFound{{.world = "w", .purpose = ReplayMail{.request = Seek{.world = "w@1", .to = {}}}}, none}));
+    EXPECT_FALSE(pass_on_refusal({.request = Seek{.world = "w@1", .to = {}}, .session = 1}));
     EXPECT_EQ(sent("w@1").size(), 1u);
+}
+
+TEST(Simulations, RequestsOfEndedSessionsAreDropped) {
+    Simulations simulations{false};
+    ASSERT_TRUE(simulations.try_send({.request = OpenReplay{.world = "w", .at = {}}, .session = 1, .request_id = 1}));
+    const auto wanted = std::get<FindRun>(simulations.mailbox_of("w").drain().at(0));
+    simulations.forget(1);
+    simulations.mailbox_of("w@1").drain();
+    EXPECT_FALSE(simulations.pass_on(RunFound{wanted, FoundRun{.world = "w", .run = {{"w.evod"}, {1, 2}}}}));
+    EXPECT_TRUE(simulations.mailbox_of("w@1").drain().empty());
 }
 
 TEST(Simulations, BothThreadsAnswerAndEnd) {
