@@ -56,6 +56,11 @@ struct IslandSummary {
 struct GenerationTicks {
     std::uint32_t first, last;
 };
+/// The state after some ticks.
+struct Advanced {
+    std::uint32_t tick;        // of the generation: the last that was performed
+    std::uint64_t alive_count; // on all islands
+};
 /// The last organism of an island has died in a tick of the generation.
 struct DiedOut {
     std::uint32_t island, tick;
@@ -77,10 +82,10 @@ class Islands {
     /// begun_with  the parameters with which the generation began.
     virtual void restore(const parameters::Parameters& begun_with, const WorldState& state,
                          base::Executor& executor) = 0;
-    /// Performs ticks, but none after the tick in which the last organism of all islands dies. Returns the last tick
-    /// that was performed. Adds the islands that have died out, in order of ticks.
-    virtual std::uint32_t advance(const parameters::Parameters& parameters, GenerationTicks ticks,
-                                  base::Executor& executor, std::vector<DiedOut>& died_out) = 0;
+    /// Performs ticks, but none after the tick in which the last organism of all islands dies. Adds the
+    /// islands that have died out, in order of ticks.
+    virtual Advanced advance(const parameters::Parameters& parameters, GenerationTicks ticks, base::Executor& executor,
+                             std::vector<DiedOut>& died_out) = 0;
     /// Ends a generation after its last tick. Returns the statistics of every island, without the moment of the end.
     ///
     /// given  the fitness from clients, per island, by id; empty: the islands compute the fitness.

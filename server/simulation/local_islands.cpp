@@ -82,35 +82,32 @@ void LocalIslands::restore(const parameters::Parameters& begun_with, const World
     summarise(tick == 0);
 }
 
-std::uint32_t LocalIslands::advance(const parameters::Parameters& parameters, GenerationTicks ticks,
-                                    base::Executor& executor, std::vector<DiedOut>& died_out) {
-    std::uint32_t tick = ticks.first;
-    while (advance_tick(parameters, tick, executor, died_out) > 0 && tick < ticks.last) {
-        ++tick;
-    }
-    summarise(false);
-    return tick;
-}
-
-std::uint64_t LocalIslands::advance_tick(const parameters::Parameters& parameters, std::uint32_t tick,
-                                         base::Executor& executor, std::vector<DiedOut>& died_out) {
-    died_out_.assign(islands_.size(), 0);
-    for_each_island(executor, [&](std::size_t i) {
-        if (islands_[i].alive_count() == 0) {
-            islands_[i].skip_tick(tick);
-            return;
+Advanced LocalIslands::advance(const parameters::Parameters& parameters, GenerationTicks ticks,
+                               base::Executor& executor, std::vector<DiedOut>& died_out) {
+    for (std::uint32_t tick = ticks.first;; ++tick) {
+        died_out_.assign(islands_.size(), 0);
+        for_each_island(executor, [&](std::size_t i) {
+            if (islands_[i].alive_count() == 0) {
+                islands_[i].skip_tick(tick);
+                return;
+            }
+            islands_[i].advance_tick(parameters, tick, executor);
+            died_out_[i] = islands_[i].alive_count() == 0;
+        });
+        std::uint64_t alive_count = 0;
+        for (std::size_t i = 0; i < islands_.size(); ++i) {
+            summaries_[i].hash = islands_[i].hash();
+            summaries_[i].alive_count = islands_[i].alive_count();
+            summaries_[i].is_as_begun = false;
+            alive_count += islands_[i].alive_count();
+            if (died_out_[i]) {
+                died_out.push_back({islands_[i].index(), tick});
+            }
         }
-        islands_[i].advance_tick(parameters, tick, executor);
-        died_out_[i] = islands_[i].alive_count() == 0;
-    });
-    std::uint64_t alive = 0;
-    for (std::size_t i = 0; i < islands_.size(); ++i) {
-        alive += islands_[i].alive_count();
-        if (died_out_[i]) {
-            died_out.push_back({islands_[i].index(), tick});
+        if (alive_count == 0 || tick == ticks.last) {
+            return {tick, alive_count};
         }
     }
-    return alive;
 }
 
 void LocalIslands::find_fitness(const parameters::Parameters& parameters, std::uint32_t tick,

@@ -28,8 +28,8 @@ class LocalIslands final : public Islands {
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation, BredIslands bred,
                           base::Executor& executor) override;
     void restore(const parameters::Parameters& begun_with, const WorldState& state, base::Executor& executor) override;
-    std::uint32_t advance(const parameters::Parameters& parameters, GenerationTicks ticks, base::Executor& executor,
-                          std::vector<DiedOut>& died_out) override;
+    Advanced advance(const parameters::Parameters& parameters, GenerationTicks ticks, base::Executor& executor,
+                     std::vector<DiedOut>& died_out) override;
     std::vector<GenerationStatistics> end_generation(const parameters::Parameters& parameters, std::uint32_t tick,
                                                      std::span<const std::vector<double>> given,
                                                      base::Executor& executor) override;
@@ -69,9 +69,6 @@ class LocalIslands final : public Islands {
     /// Calls body(i) for every element i of islands_, on the threads of the executor.
     template <class Body>
     void for_each_island(base::Executor& executor, Body&& body) const;
-    /// Performs one tick. Returns the number of living organisms.
-    std::uint64_t advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor,
-                               std::vector<DiedOut>& died_out);
     void find_fitness(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
     /// Returns the chromosomes of every island after migrants have replaced some, and changes fitness_ and founders_ in
     /// the same way.

@@ -68,7 +68,7 @@ void RunParameters::begin_breeding(std::uint64_t generation, std::vector<EventKi
     set_.active = parameters::breeding_with(set_.active, set_.requested);
 }
 
-void RunParameters::end_tick(std::uint64_t tick, std::uint64_t generation, std::vector<EventKind>& events) {
+void RunParameters::apply_due(std::uint64_t tick, std::uint64_t generation, std::vector<EventKind>& events) {
     const auto is_due = [&](const parameters::PlannedChange& change) { return change.at.tick == tick; };
     for (const parameters::PlannedChange& change : planned_) {
         if (is_due(change)) {

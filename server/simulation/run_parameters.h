@@ -65,9 +65,14 @@ class RunParameters {
     /// Applies the changes planned for the tick that has just ended.
     ///
     /// generation  in which the changes are counted.
-    void end_tick(std::uint64_t tick, std::uint64_t generation, std::vector<EventKind>& events);
+    void end_tick(std::uint64_t tick, std::uint64_t generation, std::vector<EventKind>& events) {
+        if (!planned_.empty()) {
+            apply_due(tick, generation, events);
+        }
+    }
 
   private:
+    void apply_due(std::uint64_t tick, std::uint64_t generation, std::vector<EventKind>& events);
     /// Requests the parameters in `requested`, which contain the assignments of `change`. If `requested` is a refusal,
     /// drops the change and reports why.
     void apply(const parameters::PlannedChange& change, const base::Result<parameters::RequestedParameters>& requested,

@@ -190,17 +190,44 @@ void World::advance(std::uint64_t tick, base::Executor& executor) {
     EVOD_ASSERT(tick > moment_.tick);
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
     EVOD_ASSERT(!awaits_fitness());
-    turn_over(executor);
+    if (generation_over_) {
+        turn_over(executor);
+    }
     if (moment_.generation_tick == 0) {
         parameters_.begin_tick();
     }
-    bool has_ended = advance_islands(parameters_.next_stop(tick), executor);
-    while (!has_ended && moment_.tick < tick) {
+    const parameters::Parameters& p = parameters_.active();
+    bool has_ended = false;
+    for (;;) {
+        const std::uint64_t stop = parameters_.next_stop(tick);
+        EVOD_ASSERT(stop > moment_.tick);
+        const std::uint64_t wanted = moment_.generation_tick + (stop - moment_.tick);
+        const auto first = static_cast<std::uint32_t>(moment_.generation_tick + 1);
+        Advanced advanced{.tick = first, .alive_count = 0};
+        if (has_bodies()) {
+            const std::uint64_t last = wanted == first ? first : std::min(wanted, last_tick());
+            std::vector<DiedOut> died_out;
+            advanced =
+                islands_->advance(p, {first, static_cast<std::uint32_t>(std::clamp<std::uint64_t>(last, first, ~0U))},
+                                  executor, died_out);
+            for (const DiedOut& island : died_out) {
+                events_.emplace_back(Extinction{.island = island.island,
+                                                .generation = moment_.generation,
+                                                .tick = moment_.tick + (island.tick - first + 1)});
+            }
+        }
+        for (; moment_.generation_tick < advanced.tick; ++moment_.generation_tick) {
+            ++moment_.tick;
+            moment_.simulated_s += p.tick_s;
+        }
+        has_ended = ends(moment_.generation_tick, advanced.alive_count);
+        if (has_ended || moment_.tick == tick) {
+            break;
+        }
         parameters_.end_tick(moment_.tick, moment_.generation, events_);
-        has_ended = advance_islands(parameters_.next_stop(tick), executor);
     }
     update_hash();
-    if (has_ended && parameters_.active().fitness == parameters::FitnessFunction::External) {
+    if (has_ended && p.fitness == parameters::FitnessFunction::External) {
         given_fitness_.resize(islands_->size());
         events_.emplace_back(FitnessAwaited{moment_.generation});
     } else if (has_ended) {
@@ -209,34 +236,16 @@ void World::advance(std::uint64_t tick, base::Executor& executor) {
     parameters_.end_tick(moment_.tick, generation_of_changes(), events_);
 }
 
-bool World::advance_islands(std::uint64_t tick, base::Executor& executor) {
-    const parameters::Parameters& p = parameters_.active();
-    EVOD_ASSERT(tick > moment_.tick);
-    const auto first = static_cast<std::uint32_t>(moment_.generation_tick + 1);
-    const std::uint64_t wanted = std::min(moment_.generation_tick + (tick - moment_.tick), last_tick());
-    auto last = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, first, ~0U));
-    std::uint64_t alive = 0;
-    if (has_bodies()) {
-        std::vector<DiedOut> died_out;
-        last = islands_->advance(p, {first, last}, executor, died_out);
-        for (const DiedOut& island : died_out) {
-            events_.emplace_back(Extinction{.island = island.island,
-                                            .generation = moment_.generation,
-                                            .tick = moment_.tick + (island.tick - first + 1)});
-        }
-        alive = alive_count();
-    }
-    for (; moment_.generation_tick < last; ++moment_.generation_tick) {
-        ++moment_.tick;
-        moment_.simulated_s += p.tick_s;
-    }
-    return ends(moment_.generation_tick, alive);
+// The half tick is a tolerance, so that 40 s are exactly 2,400 ticks of 1/60 s despite rounding.
+std::uint64_t World::last_tick() const {
+    return static_cast<std::uint64_t>(
+        std::floor(parameters_.active().generation_s / parameters_.active().tick_s + 0.5));
 }
 
-std::uint64_t World::last_tick() const {
+bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
     const parameters::Parameters& p = parameters_.active();
-    // The half tick is a tolerance, so that 40 s are exactly 2,400 ticks of 1/60 s despite rounding.
-    return has_bodies() ? static_cast<std::uint64_t>(std::floor(p.generation_s / p.tick_s + 0.5)) : 1;
+    return generation_tick > 0 &&
+           (alive == 0 || !has_bodies() || static_cast<double>(generation_tick) + 0.5 > p.generation_s / p.tick_s);
 }
 
 void World::finish_generation(base::Executor& executor) {
@@ -272,7 +281,9 @@ void World::update_hash() {
     for (const IslandSummary& island : islands_->summaries()) {
         hash_ += base::EntityHash{island_kind, index++}.add(island.hash.low).add(island.hash.high).finish();
     }
-    hash_ += hash_of_given(given_fitness_);
+    if (!given_fitness_.empty()) {
+        hash_ += hash_of_given(given_fitness_);
+    }
 }
 
 } // namespace evod::simulation

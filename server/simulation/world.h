@@ -209,15 +209,10 @@ class World {
     void open();
     /// The generation in which a change of parameters is counted now.
     std::uint64_t generation_of_changes() const { return moment_.generation + (is_after_last_tick() ? 1 : 0); }
-    /// The last tick of a generation unless all organisms die before.
+    /// The last tick of a generation with bodies, unless all organisms die before.
     std::uint64_t last_tick() const;
     /// Returns whether a generation ends after `generation_tick` if `alive` organisms are then alive.
-    bool ends(std::uint64_t generation_tick, std::uint64_t alive) const {
-        return generation_tick > 0 && (alive == 0 || generation_tick >= last_tick());
-    }
-    /// Performs ticks until `tick` or the end of the generation, with the active parameters. Returns whether the
-    /// generation has ended.
-    bool advance_islands(std::uint64_t tick, base::Executor& executor);
+    bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
     /// Ends a generation whose last tick has passed and whose fitness is known.
     void finish_generation(base::Executor& executor);
     /// Records the statistics of the ended generation.

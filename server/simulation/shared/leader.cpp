@@ -17,15 +17,16 @@ namespace {
 class SharedIslands final : public Islands {
   public:
     SharedIslands(Leader& leader, Leader::WorldNumber number, base::Seed seed, std::uint32_t island_count)
-        : leader_{leader}, number_{std::move(number)}, seed_{seed}, part_{leader.exchange(), seed, island_count} {}
+        : leader_{leader}, number_{std::move(number)}, part_{leader.exchange(), seed, island_count} {
+        begun_.seed = seed;
+    }
 
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation, BredIslands bred,
                           base::Executor& executor) override {
-        const Begin begin{seed_, generation, parameters, !bred.islands.empty()};
-        if (!part_.perform(order(begin), executor, std::move(bred))) {
+        begun_ = {begun_.seed, generation, parameters, !bred.islands.empty()};
+        if (!part_.perform(order(begun_), executor, std::move(bred))) {
             throw std::bad_alloc{};
         }
-        open(parameters, generation);
     }
     void restore(const parameters::Parameters& begun_with, const WorldState& state, base::Executor& executor) override {
         use(begun_with);
@@ -33,13 +34,17 @@ class SharedIslands final : public Islands {
         part_.perform(order(Restore{tick, state.parameters.active}), executor, state);
         change(tick);
     }
-    std::uint32_t advance(const parameters::Parameters& parameters, GenerationTicks ticks, base::Executor& executor,
-                          std::vector<DiedOut>& died_out) override {
+    Advanced advance(const parameters::Parameters& parameters, GenerationTicks ticks, base::Executor& executor,
+                     std::vector<DiedOut>& died_out) override {
         use(parameters);
         Meeting met = part_.perform(order(Advance{ticks}), executor);
         died_out = std::move(met.died_out);
         change(met.tick);
-        return met.tick;
+        Advanced advanced{.tick = met.tick, .alive_count = 0};
+        for (const IslandSummary& island : met.summaries) {
+            advanced.alive_count += island.alive_count;
+        }
+        return advanced;
     }
     std::vector<GenerationStatistics> end_generation(const parameters::Parameters& parameters, std::uint32_t tick,
                                                      std::span<const std::vector<double>> given,
@@ -53,7 +58,10 @@ class SharedIslands final : public Islands {
         if (!part_.perform(order(TurnOver{generation, {routes.begin(), routes.end()}}), executor)) {
             throw std::bad_alloc{};
         }
-        open(parameters, generation + 1);
+        begun_.generation = generation + 1;
+        begun_.parameters = parameters;
+        brought_.clear();
+        tick_ = 0;
     }
     EntityIds place(const PlaceEntities& command, const parameters::Parameters& parameters,
                     std::uint32_t tick) override {
@@ -125,13 +133,6 @@ class SharedIslands final : public Islands {
             part_.perform(order(UseParameters{parameters}));
         }
     }
-    /// To be called when a generation has begun.
-    void open(const parameters::Parameters& parameters, std::uint64_t generation) {
-        begun_with_ = parameters;
-        generation_ = generation;
-        brought_.clear();
-        change(0);
-    }
     /// To be called when the islands change.
     void change(std::uint32_t tick) {
         tick_ = tick;
@@ -142,8 +143,8 @@ class SharedIslands final : public Islands {
     void receive(const Bring::Island& wanted, SentIsland sent) const {
         base::InlineExecutor executor; // a reader has none
         if (wanted.with_organisms) {
-            Island begun{seed_, wanted.index};
-            begun.begin_generation(begun_with_, generation_, std::move(sent.bred.at(0)), executor);
+            Island begun{begun_.seed, wanted.index};
+            begun.begin_generation(begun_.parameters, begun_.generation, std::move(sent.bred.at(0)), executor);
             brought_.emplace(wanted.index,
                              BroughtIsland{.begun = begun, .now = begun, .is_current = false, .founders = {}});
         }
@@ -152,7 +153,7 @@ class SharedIslands final : public Islands {
         const auto read = read_state(sent.state, std::vector{here.begun.shape()}, state);
         EVOD_ASSERT(read.has_value());
         here.now = here.begun;
-        here.now.restore(state.islands.front(), tick_, begun_with_, executor);
+        here.now.restore(state.islands.front(), tick_, begun_.parameters, executor);
         EVOD_ASSERT(here.now.hash() == summaries()[wanted.index].hash);
         here.founders = std::move(sent.founders);
         here.is_current = true;
@@ -160,10 +161,8 @@ class SharedIslands final : public Islands {
 
     Leader& leader_;
     Leader::WorldNumber number_;
-    base::Seed seed_;
     Part part_;
-    parameters::Parameters begun_with_; // the parameters with which the generation began
-    std::uint64_t generation_ = 0;
+    Begin begun_{};                                        // the seed, and how the present generation began
     std::uint32_t tick_ = 0;                               // of the generation
     mutable std::map<std::size_t, BroughtIsland> brought_; // of this generation, by index
 };

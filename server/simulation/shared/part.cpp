@@ -175,7 +175,7 @@ std::vector<IslandShape> Part::shapes() const {
 Meeting Part::perform(const Advance& order, base::Executor& executor) {
     Meeting own;
     // A process whose organisms have all died stops early. Its islands would not change in the other ticks.
-    own.tick = islands_.advance(parameters_, order.ticks, executor, own.died_out);
+    own.tick = islands_.advance(parameters_, order.ticks, executor, own.died_out).tick;
     return meet(std::move(own));
 }
 
