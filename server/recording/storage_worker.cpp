@@ -14,6 +14,92 @@
 #include <variant>
 
 namespace evod::recording {
+namespace {
+
+using Runs = std::map<RunNumber, RunLog>;
+
+/// Whether the run must not be tried now.
+bool waits_for_its_file(const RunLog& run) {
+    return run.fault && !run.is_damaged() && !run.retry_is_due;
+}
+
+void note_recovery(RunLog& run) {
+    if (run.fault) {
+        run.fault.reset();
+        const std::string world = run_file::world_of(run.path);
+        log::info({.world = world}, "the run file of the world \"{}\" can be written again", world);
+    }
+}
+
+RunFaults faults_of(const Runs& runs) {
+    RunFaults faults;
+    for (const auto& [number, run] : runs) {
+        if (run.fault) {
+            faults.emplace(number, *run.fault);
+        }
+    }
+    return faults;
+}
+
+/// The time at which the next displaced file must be tried again; nullopt: no file is displaced.
+std::optional<std::chrono::steady_clock::time_point> next_retry(const Runs& runs) {
+    std::optional<std::chrono::steady_clock::time_point> next;
+    for (const auto& [number, run] : runs) {
+        if (run.fault && !run.is_damaged()) {
+            next = next ? std::min(*next, run.retry_at) : run.retry_at;
+        }
+    }
+    return next;
+}
+
+/// Logs how much of a run could not be written. Returns whether there was anything.
+bool log_lost_records(const RunLog& run) {
+    std::size_t bytes = 0, commands = 0, generations = 0;
+    const auto count = [&](const std::vector<WaitingRecord>& records) {
+        for (const WaitingRecord& waiting : records) {
+            bytes += waiting.bytes;
+            commands += waiting.record && std::holds_alternative<run_file::JournalEntry>(*waiting.record);
+            generations += waiting.record && std::holds_alternative<run_file::GenerationEnded>(*waiting.record);
+        }
+    };
+    count(run.waiting);
+    if (run.closing && !run.closing->marked) {
+        count(run.closing->last);
+    }
+    if (bytes == 0) {
+        return false;
+    }
+    const std::string world = run_file::world_of(run.path);
+    const std::string lost = fmt::format("{} bytes could not be written: the results of {} generations, {} commands, "
+                                         "and the last tick",
+                                         bytes, generations, commands);
+    if (run.is_damaged()) {
+        log::error({.world = world}, "world \"{}\": {}. The reason is: {}", world, lost, run.fault->why.message);
+    } else if (run.fault || run.name.is_lost()) {
+        log::error({.world = world},
+                   "world \"{}\": {}. Its file, {}, has been moved or deleted: move it back, or restore a copy", world,
+                   lost, run.path);
+    } else if (run.creation) {
+        log::error({.world = world}, "world \"{}\": {}. {} was not created, and no client received a success reply",
+                   world, lost, run.path);
+    } else {
+        log::error({.world = world},
+                   "world \"{}\": {}. {} contains every acknowledged command: when the disk can be written again, "
+                   "restart the server to continue the world from that point",
+                   world, lost, run.path);
+    }
+    return true;
+}
+
+bool log_lost_records(const Runs& runs) {
+    bool lost_any = false;
+    for (const auto& [number, run] : runs) {
+        lost_any |= log_lost_records(run);
+    }
+    return lost_any;
+}
+
+} // namespace
 
 bool StorageWorker::work() {
     pthread_setname_np(pthread_self(), "storage"); // the name that `top -H` shows
@@ -42,14 +128,14 @@ bool StorageWorker::work() {
             }
             disk_.set_trouble({});
         }
-        report_faults();
+        disk_.set_faults(faults_of(runs_));
         refuse_barriers();
         // When the server stops, retries failed records as long as any record can still be written. After that, the
         // failed records are lost.
         const bool advanced = std::exchange(advanced_, false);
         if (stopping && !more && !jobs_.are_running() && queue_.is_empty() && !(failure_ && advanced)) {
-            const bool displaced = next_retry().has_value();
-            return (!(failure_ || displaced) || log_lost_records()) && !lost_;
+            const bool displaced = next_retry(runs_).has_value();
+            return (!(failure_ || displaced) || !log_lost_records(runs_)) && !lost_;
         }
     }
 }
@@ -59,7 +145,7 @@ bool StorageWorker::take(bool more) {
     const auto retry_at = failure_ ? std::optional{Clock::now() + retry_after_} : std::nullopt;
     bool stopping = false;
     do {
-        HandedOver taken = queue_.take(more, retry_at, next_retry(), jobs_.are_running());
+        HandedOver taken = queue_.take(more, retry_at, next_retry(runs_), jobs_.are_running());
         stopping = taken.stopping;
         distribute(taken);
         refuse_barriers();
@@ -186,7 +272,7 @@ bool StorageWorker::commit(RunLog& run, const std::vector<WaitingRecord>& record
     if (took->count() > 0) {
         times_.commit.add(*took);
         jobs_.copy_log_if_due(run);
-        recovered(run);
+        note_recovery(run);
         advanced_ = true;
     }
     return true;
@@ -204,7 +290,7 @@ bool StorageWorker::rename_to_final_name(RunLog& run) {
     if (const auto named = run.rename_to_final_name(); !named) {
         return fail(run, named.error());
     }
-    recovered(run);
+    note_recovery(run);
     advanced_ = true;
     return true;
 }
@@ -268,7 +354,7 @@ bool StorageWorker::background_step(RunLog& run) {
         return fail(run, step.error());
     }
     if (*step) {
-        recovered(run);
+        note_recovery(run);
         release(run.written);
         jobs_.copy_log_if_due(run);
     }
@@ -349,7 +435,8 @@ void StorageWorker::give_up(RunLog& run, const base::Refusal& why) {
     run.fault = RunFault{.kind = RunFault::Kind::Damaged, .why = why};
     (void)log_lost_records(run);
     keep_old_run(run);
-    report_faults(); // before the refusals, so that a client that has received one finds the world damaged
+    disk_.set_faults(
+        faults_of(runs_)); // before the refusals, so that a client that has received one finds the world damaged
     refuse_records_of_damaged(run);
     lost_ |= run.closing && run.closing->renamed.empty();
     if (run.closing) {
@@ -386,84 +473,6 @@ bool StorageWorker::end_damaged(RunLog& run) {
         }
     }
     finish(closing); // the world is deleted, although its file has no end mark
-    return true;
-}
-
-bool StorageWorker::waits_for_its_file(const RunLog& run) const {
-    return run.fault && !run.is_damaged() && !run.retry_is_due;
-}
-
-void StorageWorker::recovered(RunLog& run) {
-    if (run.fault) {
-        run.fault.reset();
-        const std::string world = run_file::world_of(run.path);
-        log::info({.world = world}, "the run file of the world \"{}\" can be written again", world);
-    }
-}
-
-void StorageWorker::report_faults() {
-    RunFaults faults;
-    for (const auto& [number, run] : runs_) {
-        if (run.fault) {
-            faults.emplace(number, *run.fault);
-        }
-    }
-    disk_.set_faults(std::move(faults));
-}
-
-std::optional<std::chrono::steady_clock::time_point> StorageWorker::next_retry() const {
-    std::optional<std::chrono::steady_clock::time_point> next;
-    for (const auto& [number, run] : runs_) {
-        if (run.fault && !run.is_damaged()) {
-            next = next ? std::min(*next, run.retry_at) : run.retry_at;
-        }
-    }
-    return next;
-}
-
-bool StorageWorker::log_lost_records() const {
-    bool lost_any = false;
-    for (const auto& [number, run] : runs_) {
-        lost_any |= log_lost_records(run);
-    }
-    return !lost_any;
-}
-
-bool StorageWorker::log_lost_records(const RunLog& run) const {
-    std::size_t bytes = 0, commands = 0, generations = 0;
-    const auto count = [&](const std::vector<WaitingRecord>& records) {
-        for (const WaitingRecord& waiting : records) {
-            bytes += waiting.bytes;
-            commands += waiting.record && std::holds_alternative<run_file::JournalEntry>(*waiting.record);
-            generations += waiting.record && std::holds_alternative<run_file::GenerationEnded>(*waiting.record);
-        }
-    };
-    count(run.waiting);
-    if (run.closing && !run.closing->marked) {
-        count(run.closing->last);
-    }
-    if (bytes == 0) {
-        return false;
-    }
-    const std::string world = run_file::world_of(run.path);
-    const std::string lost = fmt::format("{} bytes could not be written: the results of {} generations, {} commands, "
-                                         "and the last tick",
-                                         bytes, generations, commands);
-    if (run.is_damaged()) {
-        log::error({.world = world}, "world \"{}\": {}. The reason is: {}", world, lost, run.fault->why.message);
-    } else if (run.fault || run.name.is_lost()) {
-        log::error({.world = world},
-                   "world \"{}\": {}. Its file, {}, has been moved or deleted: move it back, or restore a copy", world,
-                   lost, run.path);
-    } else if (run.creation) {
-        log::error({.world = world}, "world \"{}\": {}. {} was not created, and no client received a success reply",
-                   world, lost, run.path);
-    } else {
-        log::error({.world = world},
-                   "world \"{}\": {}. {} contains every acknowledged command: when the disk can be written again, "
-                   "restart the server to continue the world from that point",
-                   world, lost, run.path);
-    }
     return true;
 }
 

@@ -72,15 +72,6 @@ class StorageWorker {
     void give_up(RunLog& run, const base::Refusal& why);
     /// Keeps the old run of a world, because the file of the run that should replace it cannot be created.
     void keep_old_run(RunLog& replacement);
-    /// Whether the run must not be tried now.
-    bool waits_for_its_file(const RunLog& run) const;
-    void recovered(RunLog& run);
-    void report_faults();
-    /// The time at which the next displaced file must be tried again; nullopt: no file is displaced.
-    std::optional<std::chrono::steady_clock::time_point> next_retry() const;
-    /// Logs for each run how much could not be written. Returns false if anything could not be written.
-    bool log_lost_records() const;
-    bool log_lost_records(const RunLog& run) const;
 
     RecordQueue& queue_;
     DiskState& disk_;
