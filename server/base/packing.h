@@ -57,13 +57,13 @@ class Packer {
                 add(*value);
             }
         } else {
-            Fields<T>::visit(value, [this](const auto&... fields) { (add(fields), ...); });
+            Fields<T>::visit(value, [&](const auto&... fields) { (add(fields), ...); });
         }
     }
     template <class... Alternatives>
     void add(const std::variant<Alternatives...>& value) {
         add(std::uint64_t{value.index()});
-        std::visit([this](const auto& alternative) { add(alternative); }, value);
+        std::visit([&](const auto& alternative) { add(alternative); }, value);
     }
     /// Appends the values, without their number.
     template <class T>
@@ -106,7 +106,7 @@ class Unpacker {
                 read(value.emplace());
             }
         } else {
-            Fields<T>::visit(value, [this](auto&&... fields) { (read(fields), ...); });
+            Fields<T>::visit(value, [&](auto&&... fields) { (read(fields), ...); });
         }
     }
     template <class... Alternatives>

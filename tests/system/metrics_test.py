@@ -254,7 +254,7 @@ class Counts(Case):
         self.wait(server, lambda m: abs(m("process_open_fds") - len(os.listdir(f"/proc/{server.process.pid}/fd"))) < 4,
                   "as many as are open")
         threads = [value for (name, _), value in metrics.samples.items() if name == "evod_thread_cpu_seconds_total"]
-        self.assertEqual(len(threads), 4)
+        self.assertEqual(len(threads), 5)  # network, simulation, replays, storage, packing
         self.assertLessEqual(max(threads), metrics("process_cpu_seconds_total") + 1)
         version = waiting.run([EVOD, "--version"], capture_output=True, text=True).stdout.split()[1]
         self.assertEqual(metrics("evod_build_info", version=version, instructions="baseline"), 1)
@@ -469,7 +469,7 @@ class Top(Case):
         page = plain.until(lambda: (lambda one: one if re.search(world, one) else None)(
             self.evoctl(server, "top", "--once", "--interval", "0.2")), "ticks")
         self.assertRegex(page, rf"^evod \d\S* at 127\.0\.0\.1:{server.port}, up ")
-        for line in (r"memory +\d+ MiB", r"processor +\d+ %$", r"  network .* \d+ %  simulation .* \d+ %$", r"  storage .* \d+ %", r"clients +1: 1 admin",
+        for line in (r"memory +\d+ MiB", r"processor +\d+ %$", r"  network .* \d+ %  simulation .* \d+ %$", r"  replays .* \d+ %  storage .* \d+ %$", r"clients +1: 1 admin",
                      r"logins +0 failed", r"requests +0 of 1024 waiting; \d+/s", r"disk +keeps up; "):
             self.assertRegex(page, f"(?m)^{line}")
         self.assertNotIn("\x1b", page)

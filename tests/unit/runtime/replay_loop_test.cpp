@@ -129,13 +129,14 @@ TEST_F(LoopsWithDisk, SeeksEndWithTheirOwnerOrReplay) {
 TEST_F(LoopsWithDisk, APacedReplayKeepsItsPaceDuringSeeks) {
     const std::string look = look_at_the_past_of_a_run(), paced = open_replay("long");
     clock.per_look = 50us;
+    ask_speed(paced, 0.05); // 3 ticks a second: it does not reach its end while the files are read
     ask_run(paced);
     pass_until([&] { return tick(paced) > 0; });
     const auto began = clock.now();
     const std::uint64_t first = tick(paced);
     int seeks = 0;
     bool on_the_way = false;
-    while (clock.now() - began < 1s) {
+    while (seeks < 4 || on_the_way || clock.now() - began < 5s) {
         if (!on_the_way) {
             on_the_way = true;
             ask(Seek{.world = look, .to = {.generation = {}, .tick = ++seeks % 2 == 1 ? 299u : 0u}}, 1,
@@ -145,11 +146,11 @@ TEST_F(LoopsWithDisk, APacedReplayKeepsItsPaceDuringSeeks) {
                 });
         }
         loops.pass();
+        std::this_thread::sleep_for(100us);
     }
     const std::chrono::duration<double> passed = clock.now() - began;
-    EXPECT_NEAR(static_cast<double>(tick(paced) - first), passed.count() * 60, 4);
+    EXPECT_NEAR(static_cast<double>(tick(paced) - first), passed.count() * 3, 2);
     EXPECT_FALSE(entry(paced).slowed);
-    EXPECT_GT(seeks, 1);
 }
 
 TEST_F(LoopsWithDisk, SeeksDoNotChangeLiveWorlds) {
