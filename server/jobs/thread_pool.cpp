@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 namespace evod::jobs {
 namespace {
@@ -59,7 +60,12 @@ void ThreadPool::take_pieces(const Loop& loop, std::size_t thread) {
     for (std::size_t i = 0; i < thread_count_; ++i) {
         Part& part = parts_[(thread + i) % thread_count_];
         for (std::size_t begin; (begin = part.next.fetch_add(loop.grain, std::memory_order_relaxed)) < part.end;) {
-            loop.body({begin, std::min(begin + loop.grain, part.end)});
+            try {
+                loop.body({begin, std::min(begin + loop.grain, part.end)});
+            } catch (...) {
+                const std::lock_guard lock{mutex_};
+                failure_ = failure_ ? failure_ : std::current_exception();
+            }
         }
     }
     is_inside_a_piece = false;
@@ -92,6 +98,10 @@ void ThreadPool::run(std::size_t count, std::size_t grain, base::FunctionRef<voi
     yield_until([this] { return working_.load(std::memory_order_acquire) == 0; });
     std::unique_lock lock{mutex_};
     loop_finished_.wait(lock, [this] { return working_.load(std::memory_order_relaxed) == 0; });
+    if (const std::exception_ptr failure = std::exchange(failure_, nullptr)) {
+        lock.unlock();
+        std::rethrow_exception(failure);
+    }
 }
 
 template <class Predicate>

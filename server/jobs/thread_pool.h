@@ -7,6 +7,7 @@
 //              no work yields its processor some times before it sleeps.
 // Threads      the caller of a loop works too. A loop that is started inside a piece runs on the thread that started it.
 //              One thread at a time may start a loop from outside.
+// Exceptions   run() throws the first one that a piece has thrown, after all pieces have run.
 // Determinism  any thread may compute any piece; the result must not depend on it.
 #pragma once
 
@@ -16,6 +17,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -66,6 +68,7 @@ class ThreadPool final : public base::Executor {
     std::mutex mutex_;                          // guards the members below, and changes of working_
     std::condition_variable work_available_, loop_finished_;
     const Loop* loop_ = nullptr;
+    std::exception_ptr failure_; // the first exception that a piece of the loop has thrown
     bool stopping_ = false;
     std::vector<std::thread> threads_;
 };

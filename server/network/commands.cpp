@@ -138,23 +138,13 @@ bool Commands::send(simulation::Command command, const v1::Request& request, std
     if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
         change->by = by;
     }
-    const std::string world = std::visit(
-        [](const auto& c) {
-            if constexpr (requires { c.name; }) {
-                return std::string{}; // it creates a live world
-            } else {
-                return c.world;
-            }
-        },
-        command);
-    runtime::Mailbox& mailbox = simulations_.mailbox_of(world);
-    return mailbox.try_push(runtime::CommandMail{.command = std::move(command),
-                                                 .origin = {.client = std::move(by),
-                                                            .client_key = request.client_key(),
-                                                            .request_id = request.request_id(),
-                                                            .request = std::move(bytes)},
-                                                 .request_name = protocol::name_of(request),
-                                                 .session = session});
+    return simulations_.try_send(runtime::CommandMail{.command = std::move(command),
+                                                      .origin = {.client = std::move(by),
+                                                                 .client_key = request.client_key(),
+                                                                 .request_id = request.request_id(),
+                                                                 .request = std::move(bytes)},
+                                                      .request_name = protocol::name_of(request),
+                                                      .session = session});
 }
 
 void Commands::on_done(runtime::CommandDone done) {

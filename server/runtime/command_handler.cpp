@@ -1,11 +1,13 @@
 #include "server/runtime/command_handler.h"
 
+#include "server/base/assert.h"
 #include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/events.h"
 #include "server/simulation/world_name.h"
 
+#include <algorithm>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -33,7 +35,7 @@ bool changes_something(const simulation::Command& command) {
 } // namespace
 
 void CommandHandler::handle(CommandMail& mail) {
-    if (waits_for_a_build(mail.command)) {
+    if (waits_for_a_world(mail.command)) {
         return kept_.push_back(std::move(mail));
     }
     // From here on the command names its world explicitly, so that a rerun of the journal finds the same world.
@@ -68,26 +70,35 @@ void CommandHandler::handle(CommandMail& mail) {
         mail.command);
 }
 
-bool CommandHandler::waits_for_a_build(const simulation::Command& command) const {
+bool CommandHandler::waits_for_a_world(const simulation::Command& command) const {
     return std::visit(
         [this](const auto& c) {
             bool waits = false;
             if constexpr (requires { c.world; }) {
-                waits |= builds_.holds(c.world);
+                waits |= builds_.holds(c.world) || is_coming(c.world);
             }
             if constexpr (requires { c.name; }) {
-                waits |= builds_.holds(c.name);
+                waits |= builds_.holds(c.name) || is_coming(c.name);
             }
             return waits;
         },
         command);
 }
 
-void CommandHandler::take(const WorldBuilt& built) {
-    builds_.take(built);
+bool CommandHandler::is_coming(std::string_view world) const {
+    return std::ranges::any_of(
+        coming_, [&](const ForkComing& fork) { return world.empty() ? fork.comes_at_once : world == fork.name; });
+}
+
+void CommandHandler::handle_kept() {
     for (CommandMail& command : std::exchange(kept_, {})) {
         handle(command); // keeps it again if its world is still not free
     }
+}
+
+void CommandHandler::take(const WorldBuilt& built) {
+    builds_.take(built);
+    handle_kept();
 }
 
 const simulation::Entry* CommandHandler::entry_of_command(const simulation::Command& command) const {
@@ -189,14 +200,12 @@ void CommandHandler::construct(CommandMail& mail, const std::optional<RunBefore>
 void CommandHandler::fork(CommandMail& mail) {
     const auto& command = std::get<simulation::ForkWorld>(mail.command);
     const simulation::Entry* original = entry_of_command(mail.command);
-    if (!original && simulation::is_replay_name(command.world)) {
-        return outputs_.reply(BringWorld{std::move(mail), {}});
-    }
     const auto before = run_before(mail.command);
     if (original && command.at_generation && *command.at_generation != original->world.moment().generation) {
         if (const auto run = runs_.run_of(*original); !run) {
             return answer(mail, run.error(), before);
         }
+        coming_.push_back({command.name, false});
         const std::string world = original->name;
         return runs_.find({.world = world, .purpose = std::move(mail)});
     }
@@ -204,6 +213,15 @@ void CommandHandler::fork(CommandMail& mail) {
 }
 
 void CommandHandler::take(WorldBrought& brought) {
+    const std::string& name = std::get<simulation::ForkWorld>(brought.fork.command).name;
+    const auto coming = std::ranges::find(coming_, name, &ForkComing::name);
+    EVOD_ASSERT(coming != coming_.end());
+    coming_.erase(coming);
+    adopt(brought);
+    handle_kept();
+}
+
+void CommandHandler::adopt(WorldBrought& brought) {
     const RunBefore before{brought.run_id, 0};
     if (!*brought.world) {
         return answer(brought.fork, brought.world->error(), before);

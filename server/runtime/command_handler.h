@@ -14,6 +14,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -35,15 +36,22 @@ class CommandHandler {
     void handle(CommandMail& mail);
     /// Handles the mail of the build thread.
     void take(const WorldBuilt& built);
-    /// Handles the mail of the loop of the replays.
+    // Handle the mail about the worlds that come from the loop of the replays.
+    void take(ForkComing& coming) { coming_.push_back(std::move(coming)); }
     void take(WorldBrought& brought);
     /// Returns the worlds that commands have changed since the last call.
     std::vector<std::string> take_changed() { return std::exchange(changed_, {}); }
 
   private:
     base::Result<simulation::Applied> apply(const simulation::Command& command);
-    /// Whether the command must wait because a build holds one of its worlds.
-    bool waits_for_a_build(const simulation::Command& command) const;
+    /// Whether the command must wait because one of its worlds is being built or is coming.
+    bool waits_for_a_world(const simulation::Command& command) const;
+    /// Whether the world is a fork that is coming. With an empty name: whether one comes soon, because the meaning of an
+    /// empty name may then change.
+    bool is_coming(std::string_view world) const;
+    /// Handles the commands that waited.
+    void handle_kept();
+    void adopt(WorldBrought& brought);
     /// The run of the command's world before the command was applied.
     struct RunBefore {
         simulation::RunId run_id;
@@ -74,7 +82,8 @@ class CommandHandler {
     WorldBuilds& builds_;
     StorageWatch& storage_;
     RunFinder& runs_;
-    std::vector<CommandMail> kept_; // commands to worlds that builds hold, in order of arrival
+    std::vector<ForkComing> coming_; // forks whose worlds are on their way
+    std::vector<CommandMail> kept_;  // commands to worlds that builds hold or that are coming, in order of arrival
     std::vector<std::string> changed_;
 };
 

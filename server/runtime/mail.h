@@ -81,12 +81,18 @@ struct FindRun {
     std::variant<std::shared_ptr<const v1::Request>, ReplayMail, CommandMail> purpose;
 };
 
-/// A request of the thread of the live worlds to the thread of the replays: the world to fork.
+/// A request to the thread of the replays: the world of a live run at an earlier generation, to fork it.
 struct BringWorld {
     CommandMail fork;
-    std::optional<FoundRun> run; // where to find its generation; nullopt: the original is a replay
+    FoundRun run; // where to find the generation
 };
-/// The answer.
+/// The thread of the replays has the command that forks one of them. Until the world comes, the commands that name the
+/// fork must wait.
+struct ForkComing {
+    std::string name;          // of the fork
+    bool comes_at_once = true; // no seek is needed
+};
+/// The world of a fork, for the thread of the live worlds.
 struct WorldBrought {
     CommandMail fork;
     simulation::RunId run_id;                               // of the original
@@ -123,7 +129,7 @@ struct RecordsRead {
     std::shared_ptr<const base::Result<replay::NewRecords>> records;
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, WorldBrought, SessionEnded, Ping,
-                          WorldBuilt, SeekRead, RecordsRead>;
+using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, ForkComing, WorldBrought,
+                          SessionEnded, Ping, WorldBuilt, SeekRead, RecordsRead>;
 
 } // namespace evod::runtime

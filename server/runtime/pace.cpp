@@ -91,6 +91,9 @@ Pace::Due Pace::advance_paced(std::vector<Contender>& contenders) {
                 continue;
             }
             advance_slice(*entry, track, now + slice);
+            if (!has_more_than_its_share(track.user, contenders)) {
+                shares_.serve(track.user); // users who want nothing now do not save time
+            }
             shares_.spend(track.user, tools_.clock.now() - now);
             if (!entry->wants_tick()) {
                 continue;

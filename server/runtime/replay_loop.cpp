@@ -32,6 +32,7 @@ Refusal no_room(std::string message) {
 
 ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file)
     : SimulationLoop{tools, std::move(outputs)}
+    , hosts_worlds_{file.has_value()}
     , seeks_{tools.mailbox, jobs_, tools.executor}
     , shown_{laboratory_, tools.mailbox, jobs_} {
     if (file) {
@@ -41,7 +42,8 @@ ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optiona
 
 void ReplayLoop::handle(Mail& mail) {
     std::visit(
-        base::Overloaded{[this](BringWorld& request) { bring(request); }, [this](SeekRead& read) { seeks_.take(read); },
+        base::Overloaded{[this](BringWorld& request) { begin_seek(request.fork, request.run.run, request.run.until); },
+                         [this](SeekRead& read) { seeks_.take(read); },
                          [this](RecordsRead& read) { shown_.take(read); }, [this](FindRun& run) { find_run(run); },
                          [&](ReplayMail& request) {
                              if (!answer(request)) {
@@ -49,9 +51,7 @@ void ReplayLoop::handle(Mail& mail) {
                              }
                          },
                          [&](CommandMail& command) {
-                             if (std::holds_alternative<simulation::ForkWorld>(command.command)) {
-                                 bring({.fork = std::move(command), .run = {}});
-                             } else {
+                             if (!fork(command)) {
                                  SimulationLoop::handle(mail);
                              }
                          },
@@ -153,37 +153,45 @@ bool ReplayLoop::close(const ReplayMail& mail, const CloseReplay& request) {
     return true;
 }
 
-void ReplayLoop::bring(const BringWorld& mail) {
-    const auto& command = std::get<simulation::ForkWorld>(mail.fork.command);
-    const auto begin = [&](const replay::StoredRun& run, replay::RecordedUntil until) {
-        const replay::WantedMoment to{.generation = command.at_generation, .tick = {}};
-        seeks_.begin({.purpose = {mail}, .run = run, .to = to, .until = until});
-    };
-    if (mail.run) {
-        return begin(mail.run->run, mail.run->until);
+bool ReplayLoop::fork(const CommandMail& mail) {
+    const auto* command = std::get_if<simulation::ForkWorld>(&mail.command);
+    if (command == nullptr) {
+        return false;
     }
-    const auto entry = std::as_const(laboratory_).find(command.world);
-    if (!entry) {
-        return brought(mail, {}, entry.error());
-    }
-    const simulation::World& world = (*entry)->world;
-    if (command.at_generation && *command.at_generation != world.moment().generation) {
-        if (const replay::StoredRun* run = shown_.run_of((*entry)->name)) {
-            return begin(*run, {});
+    const auto entry = std::as_const(laboratory_).find(command->world);
+    const replay::StoredRun* run = entry ? shown_.run_of((*entry)->name) : nullptr;
+    if (hosts_worlds_) {
+        if (run == nullptr) {
+            return false; // the original is not a replay
         }
-        return brought(mail, (*entry)->run_id, runs_.run_of(**entry).error());
+        Mail coming = ForkComing{command->name, !command->at_generation};
+        SimulationLoop::handle(coming);
     }
-    brought(mail, (*entry)->run_id,
-            base::within_memory([&]() -> Result<simulation::World> { return world.copy(tools_.executor); }));
+    if (!entry) {
+        brought(mail, {}, entry.error());
+    } else if (command->at_generation && *command->at_generation != (*entry)->world.moment().generation) {
+        begin_seek(mail, *run, {});
+    } else {
+        brought(mail, (*entry)->run_id, base::within_memory([&]() -> Result<simulation::World> {
+                    return (*entry)->world.copy(tools_.executor);
+                }));
+    }
+    return true;
 }
 
-void ReplayLoop::brought(const BringWorld& mail, const simulation::RunId& run_id, Result<simulation::World> world) {
-    outputs_.reply(WorldBrought{mail.fork, run_id, std::make_shared<Result<simulation::World>>(std::move(world))});
+void ReplayLoop::begin_seek(const CommandMail& fork, const replay::StoredRun& run, replay::RecordedUntil until) {
+    const auto& command = std::get<simulation::ForkWorld>(fork.command);
+    const replay::WantedMoment to{.generation = command.at_generation, .tick = {}};
+    seeks_.begin({.purpose = {fork}, .run = run, .to = to, .until = until});
+}
+
+void ReplayLoop::brought(const CommandMail& fork, const simulation::RunId& run_id, Result<simulation::World> world) {
+    outputs_.reply(WorldBrought{fork, run_id, std::make_shared<Result<simulation::World>>(std::move(world))});
 }
 
 void ReplayLoop::finish(Seeks::Ended ended) {
     const replay::StoredRun& run = ended.request.run;
-    if (const auto* fork = std::get_if<BringWorld>(&ended.request.purpose.request)) {
+    if (const auto* fork = std::get_if<CommandMail>(&ended.request.purpose.request)) {
         return ended.result ? brought(*fork, run.run_id(), std::move(ended.result->rerun).take())
                             : brought(*fork, run.run_id(), with_prefix("at_", ended.result.error()));
     }

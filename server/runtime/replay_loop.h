@@ -42,14 +42,19 @@ class ReplayLoop final : public SimulationLoop {
     bool seek(const ReplayMail& mail, const Seek& request);
     bool close(const ReplayMail& mail, const CloseReplay& request);
     void open(const ReplayMail& mail, const OpenReplay& request);
-    void bring(const BringWorld& mail);
+    /// Begins the fork of a replay. Returns false if the command is something else.
+    bool fork(const CommandMail& mail);
+    /// Begins a seek to the generation that a fork begins with.
+    void begin_seek(const CommandMail& fork, const replay::StoredRun& run, replay::RecordedUntil until);
+    /// Sends the world to the thread of the live worlds.
     void finish(Seeks::Ended ended);
     void finish(const ReplayMail& mail, const std::string& moved, const replay::StoredRun& run,
                 base::Result<SeekResult> result);
-    void brought(const BringWorld& mail, const simulation::RunId& run_id, base::Result<simulation::World> world);
+    void brought(const CommandMail& fork, const simulation::RunId& run_id, base::Result<simulation::World> world);
     /// Closes all replays of a session that has ended, and cancels its seeks.
     void forget(std::uint64_t session);
 
+    const bool hosts_worlds_; // this is the only loop of the server
     std::uint64_t last_name_ = 0;
     jobs::JobQueue jobs_{{.name = "replay files", .niceness = 10}};
     Seeks seeks_;

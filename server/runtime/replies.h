@@ -4,9 +4,6 @@
 // A reply with a ticket waits for the disk: the network thread holds it until the storage thread has given the receipt
 // with this ticket (unwritten_replies.h).
 //
-// A reply with a ticket waits for the disk: the network thread holds it until the storage thread has given the receipt
-// with this ticket (unwritten_replies.h).
-//
 // Threads      plain data; one thread at a time owns it.
 #pragma once
 
@@ -98,9 +95,8 @@ CommandDone refused(CommandDone done, base::Refusal why);
 
 /// What the network thread answers.
 using Answer = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, Pong, ExportPartDone, BreedingDone>;
-/// What the outbox contains. BringWorld and WorldBrought are on their way to the other simulation thread
-/// (simulations.h).
-using Reply = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, Pong, ExportPartDone, BreedingDone, BringWorld,
+/// What the outbox contains. WorldBrought is on its way to the thread of the live worlds (simulations.h).
+using Reply = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, Pong, ExportPartDone, BreedingDone,
                            WorldBrought, recording::Receipt>;
 
 } // namespace evod::runtime

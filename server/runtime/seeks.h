@@ -44,8 +44,8 @@ class Seeks {
 
     /// What a seek is for: to open a replay, to move one, or to bring a world for a fork.
     struct Purpose {
-        std::variant<ReplayMail, BringWorld> request;
-        std::string replay = {}; // the replay that the seek moves; empty: the seek moves none
+        std::variant<ReplayMail, CommandMail> request; // a command is a fork
+        std::string replay = {};                       // the replay that the seek moves; empty: the seek moves none
 
         bool opens_replay() const;
         std::uint64_t session() const; // 0: the seek does not end with a session

@@ -55,6 +55,7 @@ void SimulationLoop::handle(Mail& mail) {
                                 [this](QueryMail& query) { queries_.add(std::move(query)); },
                                 [this](FindRun& run) { runs_.find(run); },
                                 [this](ReplayMail& request) { refuse(request); },
+                                [this](ForkComing& coming) { commands_.take(coming); },
                                 [this](WorldBrought& brought) { commands_.take(brought); },
                                 [this](SessionEnded& ended) { queries_.forget(ended.session); },
                                 [this](WorldBuilt& built) { commands_.take(built); },
@@ -63,6 +64,7 @@ void SimulationLoop::handle(Mail& mail) {
 }
 
 void SimulationLoop::poll_mailbox() {
+    update_worlds(); // before mail that concerns the worlds that have changed
     if (tools_.mailbox.pending()) {
         mail_ = tools_.mailbox.drain(std::move(mail_));
         for (Mail& mail : mail_) {

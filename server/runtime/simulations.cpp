@@ -51,6 +51,29 @@ Simulations::Part& Simulations::part_of(std::string_view world) {
     return shows_file_ || simulation::is_replay_name(world) ? replays_ : live_;
 }
 
+bool Simulations::try_send(CommandMail mail) {
+    const auto* fork = std::get_if<simulation::ForkWorld>(&mail.command);
+    if (fork != nullptr && !shows_file_ && simulation::is_replay_name(fork->world)) {
+        // The replay is forked as it is when the command comes, so the command goes to its thread.
+        ForkComing coming{fork->name, !fork->at_generation};
+        if (!replays_.mailbox.try_push(std::move(mail))) {
+            return false;
+        }
+        live_.mailbox.push(std::move(coming));
+        return true;
+    }
+    const std::string world = std::visit(
+        [](const auto& command) {
+            if constexpr (requires { command.name; }) {
+                return std::string{}; // it creates a live world
+            } else {
+                return command.world;
+            }
+        },
+        mail.command);
+    return mailbox_of(world).try_push(std::move(mail));
+}
+
 bool Simulations::try_send(ReplayMail mail) {
     const std::string world = std::visit([](const auto& request) { return request.world; }, mail.request);
     std::string with_run;
@@ -95,10 +118,6 @@ void Simulations::forget(std::uint64_t session) {
 }
 
 std::optional<Answer> Simulations::pass_on(Reply reply) {
-    if (auto* bring = std::get_if<BringWorld>(&reply)) {
-        replays_.mailbox.push(std::move(*bring));
-        return std::nullopt;
-    }
     if (auto* brought = std::get_if<WorldBrought>(&reply)) {
         part_of("").mailbox.push(std::move(*brought));
         return std::nullopt;

@@ -50,6 +50,8 @@ class Simulations {
 
     /// The mailbox of the thread that has the world of this name, or would have it. Empty: the live worlds.
     Mailbox& mailbox_of(std::string_view world) { return part_of(world).mailbox; }
+    /// Sends a command to the thread that carries it out. Returns false if its mailbox is full.
+    bool try_send(CommandMail mail);
     /// Sends a request for a replay. Unlike a command, it may need the run of a live world first. Returns false if the
     /// mailbox is full.
     bool try_send(ReplayMail mail);

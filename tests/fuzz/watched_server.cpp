@@ -183,6 +183,8 @@ void WatchedServer::watch_mail() {
                 continue;
             }
             mailbox_.push(runtime::Ping{});
+        } else if (std::holds_alternative<runtime::WorldBrought>(mail)) {
+            mailbox_.push(runtime::Ping{}); // the end of a command, too
         }
         mailbox_.push(std::move(mail));
     }

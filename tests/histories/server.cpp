@@ -116,7 +116,7 @@ Result<base::StateHash> Server::replayed(const std::string& world, std::uint64_t
     const auto result_of = [&](auto request, const char* name) {
         replay_.reset();
         EXPECT_TRUE(loops_->simulations.try_send(
-            {.request = std::move(request), .session = 1, .request_id = 1, .request_name = name}));
+            runtime::ReplayMail{.request = std::move(request), .session = 1, .request_id = 1, .request_name = name}));
         while (!replay_) {
             pass_once();
         }

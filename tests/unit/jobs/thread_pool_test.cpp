@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <new>
 #include <vector>
 
 namespace evod::jobs {
@@ -37,6 +39,22 @@ TEST_P(ThreadPoolTest, LoopsMayBeNested) {
         });
     });
     EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), 64 * 64);
+}
+
+TEST_P(ThreadPoolTest, ThrowsWhatAPieceHasThrown) {
+    ThreadPool threads{GetParam()};
+    for (const std::size_t bad : {0ul, 50ul, 99ul}) {
+        EXPECT_THROW(threads.parallel_for(100, 1,
+                                          [&](base::Range range) {
+                                              if (range.begin == bad) {
+                                                  throw std::bad_alloc{};
+                                              }
+                                          }),
+                     std::bad_alloc);
+        std::atomic<int> visits = 0;
+        threads.parallel_for(100, 1, [&](base::Range) { ++visits; });
+        EXPECT_EQ(visits, 100) << "the pool works on";
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, ThreadPoolTest, testing::Values(1, 2, 3, 8));

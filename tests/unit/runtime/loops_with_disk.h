@@ -60,19 +60,17 @@ class LoopsWithDisk : public testing::Test {
     }
 
     /// With a serialised request, because replays parse it.
-    ///
-    /// to  the name of the world or replay; empty: a live world.
-    void ask(v1::Request request, std::string_view to = "") {
+    void ask(v1::Request request) {
         request.set_client_key("test");
         request.set_request_id(++requests);
         const auto command = protocol::to_command(request, {base::Seed{7}, {requests, 1}});
         ASSERT_TRUE(command) << to_text(command.error());
-        loops.simulations.mailbox_of(to).try_push(CommandMail{*command,
-                                                              {.client = "a client",
-                                                               .client_key = "test",
-                                                               .request_id = requests,
-                                                               .request = request.SerializeAsString()},
-                                                              "command"});
+        ASSERT_TRUE(loops.simulations.try_send(CommandMail{*command,
+                                                           {.client = "a client",
+                                                            .client_key = "test",
+                                                            .request_id = requests,
+                                                            .request = request.SerializeAsString()},
+                                                           "command"}));
     }
     void ask_create(const std::string& name) {
         v1::Request request;
@@ -85,12 +83,12 @@ class LoopsWithDisk : public testing::Test {
     void ask_run(const std::string& name) {
         v1::Request request;
         request.mutable_run()->set_world(name);
-        ask(std::move(request), name);
+        ask(std::move(request));
     }
     void ask_pause(const std::string& name) {
         v1::Request request;
         request.mutable_pause()->set_world(name);
-        ask(std::move(request), name);
+        ask(std::move(request));
     }
     /// factor  nullopt: as fast as possible.
     void ask_speed(const std::string& name, std::optional<double> factor) {
@@ -98,7 +96,7 @@ class LoopsWithDisk : public testing::Test {
         request.mutable_set_speed()->set_world(name);
         factor ? request.mutable_set_speed()->mutable_speed()->set_real_time_factor(*factor)
                : request.mutable_set_speed()->mutable_speed()->set_max(true);
-        ask(std::move(request), name);
+        ask(std::move(request));
     }
 
     /// replied  called with the name of the replay.
@@ -106,7 +104,7 @@ class LoopsWithDisk : public testing::Test {
              std::function<void(const base::Result<std::string>&)> replied, const std::string& user = "user") {
         waiting.emplace(++requests, std::move(replied));
         ASSERT_TRUE(loops.simulations.try_send(
-            {.request = std::move(request), .session = session, .user = user, .request_id = requests}));
+            ReplayMail{.request = std::move(request), .session = session, .user = user, .request_id = requests}));
     }
     /// Opens a replay of a world. Returns its name.
     std::string open_replay(const std::string& world, std::optional<replay::WantedMoment> at = {},
@@ -121,6 +119,16 @@ class LoopsWithDisk : public testing::Test {
             user);
         pass_until([&] { return !name.empty(); });
         return name;
+    }
+    /// fork  at a generation, or as the original is now.
+    void ask_fork(const std::string& of, const std::string& fork, std::optional<std::uint64_t> generation = {}) {
+        v1::Request request;
+        request.mutable_fork_world()->set_world(of);
+        request.mutable_fork_world()->set_name(fork);
+        if (generation) {
+            request.mutable_fork_world()->set_at_generation(*generation);
+        }
+        ask(std::move(request));
     }
     /// Opens a replay of a paused world with 300 ticks. Returns its name.
     std::string look_at_the_past_of_a_run() {

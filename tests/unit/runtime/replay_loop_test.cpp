@@ -233,13 +233,7 @@ TEST_F(LoopsWithDisk, ReplaysAndEarlierGenerationsCanBeForked) {
     pass_until([&] { return tick("w") > 100; }); // in generation 4
     ask_pause("w");
     const auto fork = [&](const std::string& of, const std::string& name, std::optional<std::uint64_t> generation) {
-        v1::Request request;
-        request.mutable_fork_world()->set_world(of);
-        request.mutable_fork_world()->set_name(name);
-        if (generation) {
-            request.mutable_fork_world()->set_at_generation(*generation);
-        }
-        ask(std::move(request));
+        ask_fork(of, name, generation);
         return answer_of_last();
     };
     const std::string look = open_replay("w", replay::WantedMoment{.generation = {}, .tick = 75});
@@ -255,6 +249,74 @@ TEST_F(LoopsWithDisk, ReplaysAndEarlierGenerationsCanBeForked) {
     EXPECT_EQ(refused.error().violations.at(0).field, "at_generation");
     EXPECT_EQ(fork("w@77", "of_nothing", {}).error().message, "there is no such replay");
     EXPECT_EQ(fork(look, "of_replay", {}).error().code, base::RefusalCode::AlreadyExists);
+}
+
+/// The outcomes of commands that are sent together.
+TEST_F(LoopsWithDisk, CommandsAfterAForkFindIt) {
+    const std::string look = look_at_the_past_of_a_run();
+    const auto outcome = [&](std::uint64_t request) { return answered.at(request); };
+    const std::uint64_t before = requests;
+    ask_fork(look, "first");
+    ask_run("first");
+    ask_fork(look, "second");
+    ask_create("second");
+    ask_fork("long", "third", 1);
+    ask_run("third");
+    ask_fork(look, "last");
+    ask(CloseReplay{look}, 1, [](const base::Result<std::string>&) {});
+    pass_until([&] { return answered.size() >= before + 5 && waiting.empty(); });
+    EXPECT_TRUE(outcome(before + 1));
+    EXPECT_TRUE(outcome(before + 2)) << "the fork is run";
+    EXPECT_TRUE(outcome(before + 3));
+    EXPECT_EQ(outcome(before + 4).error().code, base::RefusalCode::AlreadyExists);
+    pass_until([&] { return answered.contains(before + 6) && answered.contains(before + 7); });
+    EXPECT_TRUE(outcome(before + 5));
+    EXPECT_TRUE(outcome(before + 6));
+    EXPECT_TRUE(outcome(before + 7)) << "the replay was closed after the fork";
+}
+
+TEST_F(LoopsWithDisk, AReplayMayCloseWhenItsSeekHasJustEnded) {
+    const std::string first = look_at_the_past_of_a_run();
+    ask(CloseReplay{first}, 1, [](const base::Result<std::string>&) {});
+    for (int passes = 0; passes < 60; ++passes) {
+        const std::string look = open_replay("long");
+        ask(Seek{.world = look, .to = {.generation = {}, .tick = 299}}, 1, [](const base::Result<std::string>&) {});
+        for (int step = 0; step < 2; ++step) { // its run is found, then the file is read
+            loops.pass();
+            ASSERT_TRUE(wait_until([&] { return loops.simulations.mailbox_of(look).pending(); },
+                                   [&] {
+                                       loops.handle_replies();
+                                       take_a_nap();
+                                   }));
+        }
+        for (int pass = 0; pass < passes; ++pass) {
+            loops.pass();
+        }
+        passes % 2 == 0 ? loops.simulations.forget(1)
+                        : ask(CloseReplay{look}, 1, [](const base::Result<std::string>&) {});
+        loops.pass();
+        loops.pass();
+        EXPECT_TRUE(loops.replays.laboratory().entries().empty()) << passes << " passes";
+    }
+}
+
+TEST_F(LoopsWithDisk, TimeAloneIsNotHeldAgainstAUser) {
+    ask_create("w");
+    ask_speed("w", {});
+    ask_run("w");
+    pass_until([&] { return tick("w") > 50'000; });
+    ask_pause("w");
+    const std::string of_eve = open_replay("w", {}, 2, "eve"), of_ada = open_replay("w", {}, 1, "ada");
+    for (const std::string& replay : {of_eve, of_ada}) {
+        ask_speed(replay, 10'000.0); // more than the processor can do
+    }
+    ask_run(of_eve);
+    pass_until([&] { return tick(of_eve) > 10'000; });
+    ask_run(of_ada);
+    pass_until([&] { return tick(of_ada) > 0; });
+    const std::uint64_t eve = tick(of_eve), ada = tick(of_ada);
+    pass_until([&] { return tick(of_ada) > ada + 2'000; });
+    EXPECT_NEAR(static_cast<double>(tick(of_eve) - eve) / static_cast<double>(tick(of_ada) - ada), 1, 0.15);
 }
 
 TEST_F(LoopsWithDisk, AReplayAtTheStartOfTroubleShowsWhatIsWritten) {

@@ -38,8 +38,10 @@ TEST(Simulations, DemandIsDividedBetweenTheThreads) {
 TEST(Simulations, RequestsForReplaysGetTheRunFirst) {
     Simulations simulations{false};
     const auto sent = [&](std::string_view to) { return simulations.mailbox_of(to).drain(); };
-    ASSERT_TRUE(simulations.try_send({.request = OpenReplay{.world = "w", .at = {}}, .session = 1, .request_id = 1}));
-    ASSERT_TRUE(simulations.try_send({.request = Seek{.world = "w@1", .to = {}}, .session = 1, .request_id = 2}));
+    ASSERT_TRUE(
+        simulations.try_send(ReplayMail{.request = OpenReplay{.world = "w", .at = {}}, .session = 1, .request_id = 1}));
+    ASSERT_TRUE(
+        simulations.try_send(ReplayMail{.request = Seek{.world = "w@1", .to = {}}, .session = 1, .request_id = 2}));
     std::vector<Mail> mail = sent("w");
     ASSERT_EQ(mail.size(), 2u);
     for (Mail& find : mail) {
@@ -65,9 +67,22 @@ TEST(Simulations, RequestsForReplaysGetTheRunFirst) {
     EXPECT_EQ(sent("w@1").size(), 1u);
 }
 
+TEST(Simulations, AForkOfAReplayGoesToItsThread) {
+    Simulations simulations{false};
+    ASSERT_TRUE(simulations.try_send(CommandMail{
+        simulation::ForkWorld{.world = "w@1", .name = "f", .at_generation = {}, .run_id = {1, 1}}, {}, "fork"}));
+    ASSERT_TRUE(simulations.try_send(CommandMail{simulation::Run{"f", {}}, {}, "run"}));
+    const auto live = simulations.mailbox_of("").drain();
+    ASSERT_EQ(live.size(), 2u);
+    EXPECT_EQ(std::get<ForkComing>(live[0]).name, "f");
+    EXPECT_TRUE(std::holds_alternative<CommandMail>(live[1]));
+    EXPECT_EQ(simulations.mailbox_of("w@1").drain().size(), 1u);
+}
+
 TEST(Simulations, RequestsOfEndedSessionsAreDropped) {
     Simulations simulations{false};
-    ASSERT_TRUE(simulations.try_send({.request = OpenReplay{.world = "w", .at = {}}, .session = 1, .request_id = 1}));
+    ASSERT_TRUE(
+        simulations.try_send(ReplayMail{.request = OpenReplay{.world = "w", .at = {}}, .session = 1, .request_id = 1}));
     const auto wanted = std::get<FindRun>(simulations.mailbox_of("w").drain().at(0));
     simulations.forget(1);
     simulations.mailbox_of("w@1").drain();
