@@ -340,7 +340,9 @@ struct Simulation {
         const bool goes_on = world.outcome() == evolution::Outcome::Running;
         if (goes_on) {
             turn_over();
+            const auto began = Clock::now();
             advance_slice(); // a run file contains a generation from its first tick on, as a server writes it
+            cost.tick_s += seconds_since(began);
         }
         if (recording != nullptr) {
             try_to([&] { return recording->commit(); });
