@@ -81,13 +81,16 @@ void SimulationLoop::follow_worlds() {
         pace_.show_change(world);
     }
     pace_.follow_worlds();
-    if (outputs_.counted != nullptr && laboratory_.damaged().size() != damaged_counted_) {
-        std::vector<std::string> names;
-        for (const simulation::DamagedWorld& world : laboratory_.damaged()) {
-            names.push_back(world.name);
-        }
-        damaged_counted_ = names.size();
-        outputs_.counted->set_damaged(std::move(names));
+    if (outputs_.counted == nullptr) {
+        return;
+    }
+    std::vector<std::string> damaged;
+    for (const simulation::DamagedWorld& world : laboratory_.damaged()) {
+        damaged.push_back(world.name);
+    }
+    if (damaged != damaged_counted_) {
+        damaged_counted_ = damaged;
+        outputs_.counted->set_damaged(std::move(damaged));
     }
 }
 

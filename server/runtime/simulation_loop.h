@@ -19,6 +19,7 @@
 #include "server/runtime/world_builds.h"
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace evod::runtime {
@@ -77,9 +78,9 @@ class SimulationLoop : protected Pace::Rules {
     StorageWatch storage_;
     CommandHandler commands_;
     Queries queries_;
-    std::vector<Mail> mail_;                  // reused buffer
-    std::vector<Pace::Contender> contenders_; // reused buffer
-    std::size_t damaged_counted_ = 0;
+    std::vector<Mail> mail_;                   // reused buffer
+    std::vector<Pace::Contender> contenders_;  // reused buffer
+    std::vector<std::string> damaged_counted_; // the names that the metrics have
 };
 
 } // namespace evod::runtime
