@@ -68,10 +68,10 @@ def live(organisms, factor, seconds):
         alone = ticks_per_s(server.control, seconds)
         clients = open_replays(server.port, options.replays)
         time.sleep(2)
-        beside = ticks_per_s(server.control, seconds)
+        next_to_replays = ticks_per_s(server.control, seconds)
         for client in clients:
             client.socket.close()
-        return alone, beside
+        return alone, next_to_replays
 
 
 def seeks(organisms):
@@ -103,10 +103,10 @@ def main():
     figures = []
     for _ in range(options.repeats):
         small, large, seek_small, seek_large = live(500, None, 3), live(50_000, 1.0, 4), seeks(500), seeks(20_000)
-        figures.append({"live_500_ticks_per_s": small[0], "beside": small[1], "part": small[1] / small[0],
-                        "live_50000_real_time_ticks_per_s": large[0], "real_time_beside": large[1],
-                        "seek_500_ms": seek_small["paused"], "seek_500_beside_ms": seek_small["at full speed"],
-                        "seek_20000_ms": seek_large["paused"], "seek_20000_beside_ms": seek_large["at full speed"]})
+        figures.append({"live_500_ticks_per_s": small[0], "live_500_next_to_replays": small[1], "part": small[1] / small[0],
+                        "live_50000_real_time_ticks_per_s": large[0], "live_50000_next_to_replays": large[1],
+                        "seek_500_ms": seek_small["paused"], "seek_500_next_to_full_speed_ms": seek_small["at full speed"],
+                        "seek_20000_ms": seek_large["paused"], "seek_20000_next_to_full_speed_ms": seek_large["at full speed"]})
     medians = {name: statistics.median(one[name] for one in figures) for name in figures[0]}
     if options.json:
         print(json.dumps(medians))
