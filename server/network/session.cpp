@@ -182,12 +182,11 @@ asio::awaitable<void> Session::read() {
         const bool more_to_say = requests.unanswered() > 0 || queue_.has_waiting_frames() || queue_.is_sending();
         if (error == asio::error::eof && phase_ != Phase::Ended &&
             (phase_ == Phase::Finishing || more_to_say || transport_->is_websocket())) {
-            // The client closed its sending side but may still read, so it receives the answers that come soon. After the
-            // Close frame of a WebSocket it reads only our Close frame.
-            if (transport_->is_websocket()) {
+            // The client closed its sending side but may still read. It therefore receives the answers that come soon, and
+            // in a WebSocket a Close frame.
+            if (phase_ == Phase::Finishing) {
                 close_code_ = close_code_.value_or(WebSocketClose::Normal);
-                finish();
-            } else if (phase_ != Phase::Finishing) {
+            } else {
                 phase_ = Phase::InputOver;
                 begin(Deadline::Answers, answers_timeout);
             }
