@@ -13,7 +13,7 @@ KIN = {
     "ResourceExhausted": RuntimeError, "FailedPrecondition": RuntimeError, "Aborted": RuntimeError,
     "Unimplemented": NotImplementedError, "Unavailable": ConnectionError, "NoConnection": ConnectionError,
     "Unauthenticated": PermissionError, "Timeout": TimeoutError, "DamagedData": ValueError, "FileNotFound": FileNotFoundError,
-    "MissingPackage": ImportError, "ProgramFailed": RuntimeError,
+    "MissingPackage": ImportError, "ProgramFailed": RuntimeError, "AnswerExpired": RuntimeError,
 }  # fmt: skip
 
 

@@ -7,6 +7,7 @@
     ├── PermissionDenied     PermissionError        the role of this client does not allow the call
     ├── ResourceExhausted    RuntimeError           a limit of the server is reached
     ├── FailedPrecondition   RuntimeError           the call is not possible in the current state
+    │   └── AnswerExpired    RuntimeError           the server no longer has the answer; the command may have been applied
     ├── Aborted              RuntimeError           another client changed the state first
     ├── Unimplemented        NotImplementedError    the server does not support the call: it may be older than this package
     ├── Unavailable          ConnectionError        the server is shutting down or cannot write to its disk
@@ -122,6 +123,11 @@ class FailedPrecondition(Error, RuntimeError):
     _code = commands_pb2.CODE_FAILED_PRECONDITION
 
 
+class AnswerExpired(FailedPrecondition):
+    """The connection was lost before the answer arrived, and now the server no longer has it. The command may have been
+    applied, and is not applied again. Read the current state."""
+
+
 class Aborted(Error, RuntimeError):
     """Another client changed the state first. Read the state again and repeat the call."""
 
@@ -222,7 +228,8 @@ def refusal(status: commands_pb2.Status) -> Error:
         for v in status.violations
     )
     message = _with_arguments(printable(status.message))
-    error = _OF_CODE.get(status.code, Error)(message, violations, status.code)
+    kind = AnswerExpired if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD else _OF_CODE.get(status.code, Error)
+    error = kind(message, violations, status.code)
     error.reason = status.reason
     return error
 

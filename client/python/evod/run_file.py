@@ -56,6 +56,12 @@ def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | 
     return RunFile(path, program=program)
 
 
+def _remove(folder: str, process: int) -> None:
+    """Deletes a folder, but not in a process that was forked from the one that uses it."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 class RunFile:
     """An open run file, returned by `open_run` and `evod.run`. Its tables have the same columns as those of `evod export`.
 
@@ -68,7 +74,7 @@ class RunFile:
         self.path = pathlib.Path(path)
         self._program = program
         # Deletes the folder `temporary`, if there is one, when the file is closed or garbage collected.
-        self._clean_up = weakref.finalize(self, shutil.rmtree, temporary, True) if temporary is not None else None
+        self._clean_up = weakref.finalize(self, _remove, temporary, os.getpid()) if temporary is not None else None
         if not self.path.is_file():
             raise FileNotFound(f"there is no run file {self.path}")
         # SQLite creates its shared memory file beside the run file, which fails in a read-only folder. No server can write to
