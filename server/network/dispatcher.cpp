@@ -30,10 +30,9 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
 
 /// Converts a request of the kind REQUEST_KIND_REPLAY into mail for the simulation threads.
 runtime::ReplayMail replay_mail(const v1::Request& request, const Session& session) {
-    const std::string& user = session.visitor().name;
     runtime::ReplayMail mail{.request = {},
                              .session = session.number(),
-                             .user = user.empty() ? session.address_prefix() : user,
+                             .user = account_of(session),
                              .request_id = request.request_id(),
                              .request_name = protocol::name_of(request)};
     const std::string world = protocol::lookup_name(protocol::world_of(request));
@@ -52,7 +51,7 @@ runtime::ReplayMail replay_mail(const v1::Request& request, const Session& sessi
 /// Converts a valid request into the table that an export writes.
 replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     replay::WantedTable to;
-    to.only_users = role < access::Role::Admin;
+    to.only_users = role < access::Role::Controller;
     to.table = static_cast<replay::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
     to.format =
         request.format() == v1::TEXT_FORMAT_JSON_LINES ? replay::Table::Format::JsonLines : replay::Table::Format::Csv;

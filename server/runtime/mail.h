@@ -29,6 +29,7 @@ struct CommandMail {
     run_file::Origin origin;
     std::string request_name;  // name of the field in the request: "set_parameters"
     std::uint64_t session = 0; // number of the sender's session; 0: the server itself
+    std::string account = {};  // whose account pays for the time of a seek
 };
 
 /// A query that reads the laboratory. The simulation thread answers it between two ticks, when the query budget allows

@@ -88,7 +88,7 @@ std::uint64_t Seeks::Purpose::session() const {
 
 std::string Seeks::Purpose::user() const {
     const auto* mail = std::get_if<ReplayMail>(&request);
-    return mail != nullptr ? mail->user : run_file::user_of(std::get<CommandMail>(request).origin);
+    return mail != nullptr ? mail->user : std::get<CommandMail>(request).account;
 }
 
 void Seeks::begin(Request request) {

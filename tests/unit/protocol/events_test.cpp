@@ -13,7 +13,7 @@ namespace evod::protocol {
 namespace {
 
 TEST_F(Lived, EveryKindOfEventIsConverted) {
-    const std::string by = "karl: evoctl 127.0.0.1:5000";
+    const base::Actor by = base::client_actor("karl", "evoctl", "127.0.0.1:5000");
     const simulation::EventKind kinds[] = {simulation::GenerationFinished{{{}}},
                                            simulation::MigrationHappened{1, {{0, 1, 2}}},
                                            simulation::Extinction{1, 2, 30},
