@@ -247,7 +247,8 @@ TEST_F(RunFileTest, TheJournalListsItsClientKeys) {
     std::uint64_t number = 0;
     (*file)->begin();
     const auto write = [&](const base::Actor& by, const std::string& key, std::uint64_t id) {
-        (*file)->write(JournalEntry{.number = ++number, .tick = 0, .origin = {by, key, id, "request"}, .answer = {}});
+        (*file)->write(JournalEntry{
+            .number = ++number, .tick = 0, .origin = {by, key, id, "request"}, .answer = {}, .control = {}});
     };
     const base::Actor ada = base::client_actor("ada", "a: b", "10.0.0.1:1"),
                       anyone = base::client_actor("", "a", "::1:2");
