@@ -52,7 +52,7 @@ runtime::ReplayMail replay_mail(const v1::Request& request, const Session& sessi
 /// Converts a valid request into the table that an export writes.
 replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     replay::WantedTable to;
-    to.only_users = role < access::Role::Admin;
+    to.only_users = role < access::Role::Controller;
     to.table = static_cast<replay::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
     to.format =
         request.format() == v1::TEXT_FORMAT_JSON_LINES ? replay::Table::Format::JsonLines : replay::Table::Format::Csv;

@@ -98,10 +98,10 @@ constexpr LimitRow table[] = {
      "the server evicts the oldest answer; if the client repeats that command, the server refuses it with "
      "`FAILED_PRECONDITION`"},
     {Limit::ClientKeys, "client_keys_max", client_keys_max,
-     "keys with cached answers; all cached answers together have at most 64 MiB",
-     "the server evicts keys with a single command first, then the least recently used keys. It remembers the highest "
-     "`request_id` of the last 100,000 evicted keys, and refuses their commands up to that id with "
-     "`FAILED_PRECONDITION`"},
+     "keys with cached answers; all cached answers together have at most 64 MiB. A user has at most half of both",
+     "the server evicts keys of the user who has the most: keys with a single command first, then the least recently "
+     "used keys. It remembers the highest `request_id` of the last 100,000 evicted keys, and refuses their commands up "
+     "to that id with `FAILED_PRECONDITION`"},
     {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::history_generations_kept,
      "generations per world whose statistics the server keeps; with more than 13 islands, as many as fit into 131,072 "
      "rows",

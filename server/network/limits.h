@@ -161,7 +161,7 @@ constexpr double empty_frames_per_s_max = 100, empty_frames_burst_max = 1000;
 // close connections on which nothing is sent.
 constexpr std::chrono::seconds websocket_ping_after{10}, websocket_silence_max{30};
 
-// Maximum size of all cached answers together. Beyond it the least recently used keys are evicted first.
+// Maximum size of all cached answers together.
 constexpr std::size_t retry_bytes_max = 64 << 20;
 // Number of evicted keys for which the cache remembers the highest request_id.
 constexpr std::size_t evicted_keys_max = 100'000;

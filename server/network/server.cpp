@@ -158,8 +158,9 @@ bool Server::run() {
     simulation::Laboratory worlds;
     if (archive_) {
         static_assert(replay::Archive::answers_kept_of_ended == retries_kept &&
-                      replay::Archive::answers_of_ended_bytes_max == retry_bytes_max);
-        dispatcher_.commands().restore(archive_->take_answers());
+                      replay::Archive::answers_of_ended_bytes_max == retry_bytes_max &&
+                      replay::Archive::keys_kept_of_ended == evicted_keys_max);
+        dispatcher_.commands().restore(archive_->take_used_keys(), archive_->take_answers());
         worlds = archive_->take_laboratory();
         for (const auto& entry : worlds.entries()) {
             if (entry->control.leased) {

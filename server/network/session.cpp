@@ -149,8 +149,8 @@ v1::Limits Session::limits() const {
     return limits;
 }
 
-std::string Session::by() const {
-    return (!visitor_ || visitor_->name.empty() ? "" : visitor_->name + ": ") + client_ + " " + to_text(peer_);
+base::Actor Session::actor() const {
+    return base::client_actor(visitor_ ? visitor_->name : "", client_, to_text(peer_));
 }
 
 // ---- reading ---------------------------------------------------------------------------------------------------

@@ -93,8 +93,10 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     std::uint64_t number() const { return number_; }
     bool greeted() const { return visitor_.has_value(); }
-    /// User, client name and address: "anna: evoview 127.0.0.1:51234".
-    std::string by() const;
+    /// The client of this session.
+    base::Actor actor() const;
+    /// The client of this session for log lines: "anna: evoview 127.0.0.1:51234".
+    std::string by() const { return to_text(actor()); }
     /// The limits that apply to the role of this session.
     v1::Limits limits() const;
     /// The user of the session, which must have received its Hello.

@@ -68,7 +68,7 @@ void Server::send(const std::vector<SentCommand>& commands) {
         answers_[sent.request.request_id()] = std::nullopt;
         loops_->simulations.mailbox_of("").push(
             runtime::CommandMail{.command = sent.command,
-                                 .origin = {.client = client,
+                                 .origin = {.by = client,
                                             .client_key = sent.request.client_key(),
                                             .request_id = sent.request.request_id(),
                                             .request = sent.request.SerializeAsString()},

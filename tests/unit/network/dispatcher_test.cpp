@@ -423,7 +423,7 @@ TEST_F(DispatcherTest, SendsCommandsOfTheServerItself) {
     const auto waiting = take_commands();
     ASSERT_EQ(waiting.size(), 2u) << "each has a request_id of its own";
     EXPECT_EQ(waiting[0].session, 0u);
-    EXPECT_EQ(waiting[0].origin.client, "evod");
+    EXPECT_EQ(waiting[0].origin.by, base::server_actor());
     EXPECT_NE(waiting[0].origin.request_id, waiting[1].origin.request_id);
 }
 
