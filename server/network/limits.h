@@ -142,8 +142,9 @@ class LimitCounters {
 
 // ---- constants that tune connections but do not limit clients --------------------------------------------------
 
-// Rate limit of log lines about sessions that ended without a Hello.
-constexpr double ungreeted_lines_per_s = 1, ungreeted_lines_burst = 20;
+// Rate limit of log lines about the sessions of a user, and of those about all sessions that ended without a Hello.
+constexpr double session_lines_per_s = 1, session_lines_burst = 20;
+constexpr std::size_t log_users_max = 256;
 
 // Maximum of unsent bytes in the kernel. It is small so that a slow viewer receives new snapshots instead of old ones.
 constexpr int unsent_bytes_max = 128 << 10;

@@ -384,33 +384,32 @@ void Session::on_hello(const v1::Hello& hello) {
 void Session::log_connection(const std::string& what) const {
     // Every call of evoctl opens a session, usually on the server's own machine. Such sessions are logged only at
     // Debug.
-    const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
-    if (log::wanted(level)) {
-        log::write(level, {.session = number_, .client = by()},
-                   "session " + std::to_string(number_) + ": " + by() + " " + what);
+    log_line(peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info, {}, what);
+}
+
+void Session::log_line(log::Level level, std::string_view code, const std::string& what) const {
+    if (!log::wanted(level)) {
+        return;
     }
+    std::uint64_t left_out = 0;
+    if (level >= log::Level::Info) { // clients must not fill the disk with log lines
+        const std::string user = !greeted() ? "" : visitor_->name.empty() ? address_prefix_ : visitor_->name;
+        const auto before = host_.log_limit.take(user, host_.clock->now());
+        if (!before) {
+            return;
+        }
+        left_out = *before;
+    }
+    const std::string who = greeted() ? by() : to_text(peer_);
+    log::write(level, {.session = number_, .client = who, .code = std::string{code}},
+               "session " + std::to_string(number_) + ": " + who + " " + what +
+                   (left_out == 0 ? ""
+                                  : "; " + std::to_string(left_out) + " earlier " +
+                                        (greeted() ? "lines about this user" : "connections") + " were not logged"));
 }
 
 void Session::log_closed(std::string_view code, const std::string& why) {
-    const std::string who = greeted() ? by() : to_text(peer_);
-    std::string left_out;
-    if (!greeted()) { // connections without a Hello must not fill the disk with log lines
-        SessionHost::UngreetedLog& ungreeted = host_.ungreeted_log;
-        const auto now = host_.clock->now();
-        if (!ungreeted.lines) {
-            ungreeted.lines.emplace(ungreeted_lines_per_s, ungreeted_lines_burst, now);
-        }
-        if (!ungreeted.lines->take(1, now)) {
-            ++ungreeted.left_out;
-            return;
-        }
-        if (ungreeted.left_out > 0) {
-            left_out =
-                "; " + std::to_string(std::exchange(ungreeted.left_out, 0)) + " earlier connections were not logged";
-        }
-    }
-    log::info({.session = number_, .client = who, .code = std::string{code}}, "session {}: {} closed: {}{}", number_,
-              who, why, left_out);
+    log_line(log::Level::Info, code, "closed: " + why);
 }
 
 void Session::fail(const base::Refusal& refused) {
@@ -432,9 +431,8 @@ void Session::check_progress(runtime::Clock::duration watched) {
     const bool sends = queue_.is_sending() && phase_ != Phase::Ended;
     if (watch_.is_stalled(sends ? std::optional{transport_->progress()} : std::nullopt, watched)) {
         host_.limit_counters.met(Limit::StalledTimeout);
-        log::warn({.session = number_, .client = by()},
-                  "session {}: {} closed: the client has received nothing for {} s", number_, by(),
-                  stalled_timeout.count());
+        log_line(log::Level::Warn, {},
+                 "closed: the client has received nothing for " + std::to_string(stalled_timeout.count()) + " s");
         close();
     }
     if (transport_->is_websocket()) {
@@ -467,9 +465,9 @@ std::size_t Session::held_bytes() const {
 
 void Session::evict() {
     host_.limit_counters.met(Limit::ClientBufferBytes);
-    log::warn({.session = number_, .client = by()},
-              "session {}: {} closed: all sessions use more than {} MiB of memory, and this one uses {} KiB", number_,
-              by(), client_buffer_bytes_max >> 20, held_bytes() >> 10);
+    log_line(log::Level::Warn, {},
+             "closed: all sessions use more than " + std::to_string(client_buffer_bytes_max >> 20) +
+                 " MiB of memory, and this one uses " + std::to_string(held_bytes() >> 10) + " KiB");
     close();
 }
 

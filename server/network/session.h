@@ -20,6 +20,7 @@
 #include "server/metrics/traffic.h"
 #include "server/network/client_watch.h"
 #include "server/network/limits.h"
+#include "server/network/log_limit.h"
 #include "server/network/messages.h"
 #include "server/network/page_address.h"
 #include "server/network/requests_in_flight.h"
@@ -39,6 +40,10 @@
 #include <optional>
 #include <set>
 #include <string>
+
+namespace evod::log {
+enum class Level;
+}
 
 namespace evod::network {
 
@@ -61,11 +66,7 @@ struct SessionHost {
     asio::ssl::context* tls = nullptr;       // nullptr: no TLS
     metrics::Traffic traffic = {};
     runtime::Clock* clock = nullptr;
-    /// Limits the rate of log lines about sessions that ended without a Hello.
-    struct UngreetedLog {
-        std::optional<TokenBucket> lines = {}; // created when the first line is logged
-        std::uint64_t left_out = 0;            // number of lines omitted since the last logged line
-    } ungreeted_log = {};
+    LogLimit log_limit = {};
     std::string frame = {}; // reused buffer in which frames of snapshots are assembled
     /// Authenticates a client by its token and address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
@@ -183,6 +184,8 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void log_connection(const std::string& what) const;
     /// code  name of the refusal's code; empty: the session was not refused.
     void log_closed(std::string_view code, const std::string& why);
+    /// Logs a line about this session, unless there are too many lines about its user.
+    void log_line(log::Level level, std::string_view code, const std::string& what) const;
     void end_coroutine();
 
     std::unique_ptr<Transport> transport_; // never nullptr

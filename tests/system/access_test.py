@@ -1,5 +1,6 @@
 """Tokens, roles and TLS over real sockets. EVOD and EVOCTL name the programs, MESSAGES
 the folder of the message classes."""
+import contextlib
 import csv
 import io
 import json
@@ -454,6 +455,26 @@ class Tokens(Access):
                     pass
             return "earlier connections were not logged" in server.output()
         plain.until(another, "how many were left out")
+
+    def test_a_user_does_not_fill_the_log(self):
+        eve, ada = self.token("eve", VIEWER), self.token("ada", VIEWER)
+        server = self.serve("--require-token")
+
+        def end_badly(secret):
+            with contextlib.closing(Client(server, secret).socket) as connection:
+                connection.sendall(b"no frame")
+                while connection.recv(1000):
+                    pass
+        for _ in range(200):
+            end_badly(eve)
+        self.assertLess(len(re.findall("eve: .* closed: ", server.output())), 150)
+        end_badly(ada)
+        plain.until(lambda: re.search("ada: .* closed: ", server.output()), "the line about another user")
+
+        def left_out():
+            end_badly(eve)
+            return "earlier lines about this user were not logged" in server.output()
+        plain.until(left_out, "how many were left out")
 
     def test_local_clients_are_logged_at_level_debug(self):
         for options, logged in (((), False), (("--log-level", "debug"), True)):
