@@ -36,6 +36,7 @@ class Dispatcher {
     }
 
     Commands& commands() { return commands_; }
+    BackgroundQueries& background_queries() { return background_queries_; }
     /// Commands::handle_own().
     void handle_own(v1::Request request) { commands_.handle_own(std::move(request)); }
 

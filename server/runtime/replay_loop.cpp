@@ -30,9 +30,10 @@ Refusal no_room(std::string message) {
 
 } // namespace
 
-ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file)
+ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, JobTurns& turns, std::optional<FileReplay> file)
     : SimulationLoop{tools, std::move(outputs)}
     , hosts_worlds_{file.has_value()}
+    , jobs_{turns}
     , seeks_{tools.mailbox, jobs_, tools.executor}
     , shown_{laboratory_, tools.mailbox, jobs_} {
     if (file) {
