@@ -130,13 +130,13 @@ TEST_F(ExportJobTest, ACancelledExportSaysWhy) {
     thread.next({.session = 3, .request_id = 9, .export_id = 7});
     thread.cancel(refusal(RefusalCode::Aborted, "another user needs the place"));
     ASSERT_TRUE(wait_until([&] { return thread.finished(); })) << "a cancelled job needs no turn";
-    bool is_told = false;
+    bool is_reported = false;
     for (const Delivery& delivery : outbox.take().deliveries) {
         const auto& part = std::get<ExportPartDone>(std::get<Reply>(delivery)).part;
         EXPECT_TRUE(!part || !part->last) << "a table that is cut short must not look complete";
-        is_told = !part && part.error().message == "another user needs the place";
+        is_reported = !part && part.error().message == "another user needs the place";
     }
-    EXPECT_TRUE(is_told);
+    EXPECT_TRUE(is_reported);
 }
 
 TEST_F(ExportJobTest, CancellingNeverMakesATableLookComplete) {

@@ -114,7 +114,7 @@ TEST_F(JobTurnsTest, UsersGetEqualTimeWhateverJobsTheyHave) {
     EXPECT_NEAR(ticks["ada"], ticks["eve"], 25) << "two slices";
 }
 
-TEST_F(JobTurnsTest, TimeThatNobodyElseWantedIsFree) {
+TEST_F(JobTurnsTest, TimeThatNoOtherJobWantedIsFree) {
     Turn eve{turns, "eve", never};
     clock.advance(1h);
     std::atomic<int> ada_ticks = 0;
