@@ -199,7 +199,10 @@ v1::Metrics Server::metrics() {
     std::vector<std::pair<Limit, base::Quota>> pools{{Limit::Sessions, table_.places()},
                                                      {Limit::Newcomers, table_.newcomers()},
                                                      {Limit::MailboxCommands, simulations_.mailbox_places()},
-                                                     {Limit::Replays, dispatcher_.replay_places().quota()}};
+                                                     {Limit::Replays, dispatcher_.replay_places().quota()},
+                                                     {Limit::Exports, dispatcher_.background_queries().exports()},
+                                                     {Limit::Breedings, dispatcher_.background_queries().breedings()},
+                                                     {Limit::ClientKeys, dispatcher_.commands().cached_keys()}};
     if (http_) {
         pools.emplace_back(Limit::HttpConnections, http_->places());
     }
