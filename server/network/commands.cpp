@@ -111,8 +111,8 @@ void Commands::handle(Session& session, const v1::Request& request) {
     const UserKey key{session.visitor().name, request.client_key()};
     std::string bytes = bytes_of(request);
     ++session.requests.commands_under_way;
-    const auto verdict = reply_cache_.begin(
-        key, session.account(), id, bytes, [weak = session.weak_from_this()](const auto& frame) {
+    const auto verdict =
+        reply_cache_.begin(key, session.account(), id, bytes, [weak = session.weak_from_this()](const auto& frame) {
             if (const auto waiting = weak.lock()) {
                 --waiting->requests.commands_under_way;
                 waiting->answer(frame);

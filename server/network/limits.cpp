@@ -93,7 +93,8 @@ constexpr LimitRow table[] = {
     {Limit::ExportPatience, "export_patience_s", seconds(runtime::ExportJob::patience),
      "seconds from one part of an export until the client requests the next", "the server cancels the export"},
     {Limit::Breedings, "breedings_max", breedings_max, "GetBreeding that run at once",
-     "further ones wait, and users are served in turn. Above 64 that wait for one user, the server refuses the request with "
+     "further ones wait, and users are served in turn. Above 64 that wait for one user, the server refuses the request "
+     "with "
      "`RESOURCE_EXHAUSTED`",
      shared},
     {Limit::WorldNameBytes, "world_name_bytes_max", simulation::world_name_bytes_max,
