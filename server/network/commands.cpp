@@ -94,11 +94,16 @@ void Commands::handle(Session& session, const v1::Request& request) {
 
     const std::string key = ReplyCache::key_of(session.visitor().name, request.client_key());
     std::string bytes = bytes_of(request);
+    ++session.requests.commands_under_way;
     const auto verdict = reply_cache_.begin(key, id, bytes, [weak = session.weak_from_this()](const auto& frame) {
         if (const auto waiting = weak.lock()) {
+            --waiting->requests.commands_under_way;
             waiting->answer(frame);
         }
     });
+    if (verdict == ReplyCache::Verdict::Different || verdict == ReplyCache::Verdict::TooOld) {
+        --session.requests.commands_under_way; // the cache has dropped the waiter
+    }
     switch (verdict) {
     case ReplyCache::Verdict::Known:
         return;
@@ -117,7 +122,7 @@ void Commands::handle(Session& session, const v1::Request& request) {
     case ReplyCache::Verdict::New:
         break;
     }
-    if (!send(*std::move(command), request, std::move(bytes), session.by(), session.number())) {
+    if (!send(*std::move(command), request, std::move(bytes), session.by(), &session)) {
         reply_cache_.forget(key, id, encode_response(refused(mailbox_full(limit_counters_))));
     }
 }
@@ -130,11 +135,11 @@ void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> leas
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;
     }
-    send(*std::move(command), request, bytes_of(request), std::string{protocol::by_the_server}, 0);
+    send(*std::move(command), request, bytes_of(request), std::string{protocol::by_the_server}, nullptr);
 }
 
 bool Commands::send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
-                    std::uint64_t session) {
+                    const Session* session) {
     if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
         change->by = by;
     }
@@ -144,7 +149,8 @@ bool Commands::send(simulation::Command command, const v1::Request& request, std
                                                                  .request_id = request.request_id(),
                                                                  .request = std::move(bytes)},
                                                       .request_name = protocol::name_of(request),
-                                                      .session = session});
+                                                      .session = session != nullptr ? session->number() : 0,
+                                                      .user = session != nullptr ? session->account() : ""});
 }
 
 void Commands::on_done(runtime::CommandDone done) {

@@ -53,9 +53,9 @@ class Commands {
     ///
     /// bytes    the serialised request.
     /// by       the sender, in the text format that protocol::actor_of() parses.
-    /// session  number of the sender's session; 0: the server itself.
+    /// session  the sender's session; nullptr: the server itself.
     bool send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
-              std::uint64_t session);
+              const Session* session);
     /// key  the sender's key in the reply cache.
     void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
                     const SharedBytes& frame);

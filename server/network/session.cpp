@@ -37,6 +37,7 @@ Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::u
     , number_{number}
     , peer_{transport_->peer()}
     , address_prefix_{address_key(peer_.address())}
+    , account_{address_prefix_}
     , deadline_timer_{transport_->socket().get_executor()}
     , reader_bytes_{host.send_memory}
     , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
@@ -114,6 +115,14 @@ void Session::on_missed(Deadline deadline) {
                             "a frame did not arrive completely within " + std::to_string(frame_timeout.count()) +
                                 " s: connect again and send each frame without pauses",
                             base::Reason::FrameLate));
+    case Deadline::Answers:
+        host_.limit_counters.met(Limit::AnswersTimeout);
+        if (turn_.is_awaited()) {
+            return turn_.notify(); // fail_when_answered() continues
+        }
+        log_closed({}, "the client has closed its sending side, and its requests were not answered within " +
+                           std::to_string(answers_timeout.count()) + " s");
+        return close();
     case Deadline::Farewell:
         return close();
     }
@@ -173,12 +182,14 @@ asio::awaitable<void> Session::read() {
         const bool more_to_say = requests.unanswered() > 0 || queue_.has_waiting_frames() || queue_.is_sending();
         if (error == asio::error::eof && phase_ != Phase::Ended &&
             (phase_ == Phase::Finishing || more_to_say || transport_->is_websocket())) {
-            // The client closed its sending side but may still read. It therefore receives the pending answers, and in a
-            // WebSocket a Close frame.
-            if (phase_ == Phase::Finishing) {
+            // The client closed its sending side but may still read, so it receives the answers that come soon. After the
+            // Close frame of a WebSocket it reads only our Close frame.
+            if (transport_->is_websocket()) {
                 close_code_ = close_code_.value_or(WebSocketClose::Normal);
-            } else {
+                finish();
+            } else if (phase_ != Phase::Finishing) {
                 phase_ = Phase::InputOver;
+                begin(Deadline::Answers, answers_timeout);
             }
             writer_.notify();
             end_coroutine();
@@ -227,7 +238,7 @@ asio::awaitable<void> Session::read() {
             const auto began = host_.clock->now();
             on_frame(**frame);
             if (is_large) {
-                host_.large_frames.charge(user_key(), host_.clock->now(), host_.clock->now() - began);
+                host_.large_frames.charge(account_, host_.clock->now(), host_.clock->now() - began);
             }
             // Let the thread serve other sessions before the next frame is read.
             co_await asio::post(transport_->socket().get_executor(), no_throw);
@@ -269,8 +280,8 @@ asio::awaitable<void> Session::wait_for_turn(double cost) {
 
 asio::awaitable<void> Session::wait_for_large_frame() {
     // Another session of the user may have parsed one when this session wakes up.
-    for (auto now = host_.clock->now(), earliest = host_.large_frames.earliest(user_key());
-         !is_over() && earliest > now; now = host_.clock->now(), earliest = host_.large_frames.earliest(user_key())) {
+    for (auto now = host_.clock->now(), earliest = host_.large_frames.earliest(account_); !is_over() && earliest > now;
+         now = host_.clock->now(), earliest = host_.large_frames.earliest(account_)) {
         co_await turn_.wait(Signal::Timer::clock_type::now() + (earliest - now));
     }
 }
@@ -278,7 +289,7 @@ asio::awaitable<void> Session::wait_for_large_frame() {
 asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
     if (requests.unanswered() > 0) {
         phase_ = Phase::InputOver;
-        end(Deadline::Frame);
+        begin(Deadline::Answers, answers_timeout);
         writer_.notify();
         co_await turn_.wait();
     }
@@ -348,6 +359,11 @@ void Session::on_hello(const v1::Hello& hello) {
     if (!visitor) {
         return fail(visitor.error());
     }
+    const std::string& account = visitor->name.empty() ? address_prefix_ : visitor->name;
+    if (const auto refused = host_.make_room(account)) {
+        return fail(*refused);
+    }
+    account_ = account;
     visitor_ = *std::move(visitor);
     if (hello.frame_bytes_max() != 0) {
         queue_.set_frame_bytes_max(hello.frame_bytes_max());
@@ -394,7 +410,7 @@ void Session::log_line(log::Level level, std::string_view code, const std::strin
     }
     std::uint64_t left_out = 0;
     if (level >= log::Level::Info) { // clients must not fill the disk with log lines
-        const auto before = host_.log_limit.take(greeted() ? user_key() : "", host_.clock->now());
+        const auto before = host_.log_limit.take(greeted() ? account_ : "", host_.clock->now());
         if (!before) {
             return;
         }

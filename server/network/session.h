@@ -72,6 +72,10 @@ struct SessionHost {
     std::string frame = {}; // reused buffer in which frames of snapshots are assembled
     /// Authenticates a client by its token and address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
+    /// Makes room for one more session of this account. Returns nullopt, or why there is none.
+    std::function<std::optional<base::Refusal>(const std::string& account)> make_room = [](const std::string&) {
+        return std::nullopt;
+    };
     std::function<void(Session&, v1::Request)> handle = {};
     std::function<void(Session&)> ended = {}; // called once, when the session has ended
 };
@@ -98,9 +102,12 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     v1::Limits limits() const;
     /// The user of the session, which must have received its Hello.
     const access::Visitor& visitor() const { return *visitor_; }
-    /// The IPv4 address, or the /64 prefix of the IPv6 address. The limits per address count the sessions with an equal
-    /// prefix.
+    /// The IPv4 address, or the prefix of the IPv6 address that identifies one site.
     const std::string& address_prefix() const { return address_prefix_; }
+    /// Whose quota the session uses: the name of its token or, without a token, its address prefix.
+    const std::string& account() const { return account_; }
+    /// Whether the session is closed, or will be once its queued data is sent.
+    bool is_over() const { return phase_ >= Phase::Finishing; }
 
     /// Sends the answer to an admitted request.
     void answer(SharedBytes frame);
@@ -138,12 +145,12 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     enum class Phase {
         Connecting, // the transport is not ready for writing
         Open,
-        InputOver, // nothing more is read, but pending answers are still sent
+        InputOver, // nothing more is read, but pending answers are still sent until answers_timeout
         Finishing, // only the queued data is still sent
         Ended,     // the connection is closed
     };
     /// What the client must do in time. The waits exclude each other: hello_timeout is shorter than frame_timeout.
-    enum class Deadline { None, Hello, Frame, Farewell };
+    enum class Deadline { None, Hello, Frame, Answers, Farewell };
     using Kind = SendQueue::Kind;
 
     asio::awaitable<void> read();
@@ -182,18 +189,13 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     /// Logs a line about this session, unless there are too many lines about its user.
     void log_line(log::Level level, std::string_view code, const std::string& what) const;
     void end_coroutine();
-    /// Identifies the user among all: the name of the token, or without one the prefix of the address.
-    const std::string& user_key() const {
-        return visitor_ && !visitor_->name.empty() ? visitor_->name : address_prefix_;
-    }
-    bool is_over() const { return phase_ >= Phase::Finishing; }
 
     std::unique_ptr<Transport> transport_; // never nullptr
     SessionHost& host_;
     const std::uint64_t number_;
     const tcp::endpoint peer_;
     const std::string address_prefix_;
-    std::string client_;
+    std::string account_, client_;
     std::optional<access::Visitor> visitor_; // nullopt: no Hello was received
     Phase phase_ = Phase::Connecting;
     Deadline deadline_ = Deadline::None;

@@ -107,6 +107,7 @@ WatchedServer::WatchedServer()
                   sessions_,
                   streams_,
                   host_,
+                  network::LimitOptions{}.replays_max,
                   [this] { boost::asio::post(context_, [this] { go_away(); }); },
                   [] { return v1::Metrics{}; }}
     , loop_{{mailbox_, simulations_.part_of("").demand, executor_, clock()},

@@ -238,7 +238,7 @@ class Sessions(Case):
         self.assertEqual(last.socket.at_end(), POLICY)
 
     def serve_few(self):
-        return self.server("--keep-nothing", "--http-port", "0", "--sessions-max", "3")
+        return self.server("--keep-nothing", "--http-port", "0", "--sessions-max", "6")
 
     def test_a_slow_reader_gets_fewer_snapshots(self):
         control = self.client(self.served)
