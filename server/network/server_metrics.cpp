@@ -10,6 +10,7 @@
 #include "server/network/limits.h"
 #include "server/network/server.h"
 #include "server/network/web_assets.h"
+#include "server/protocol/public_text.h"
 #include "server/protocol/refusals.h"
 
 #include <unistd.h>
@@ -239,7 +240,7 @@ v1::Metrics Server::metrics() {
 asio::awaitable<HttpAnswer> Server::health() {
     const auto ill = [](const std::string& why) {
         return HttpAnswer{.status = boost::beast::http::status::service_unavailable,
-                          .text = protocol::quotable(why, 1000) + '\n'};
+                          .text = protocol::quotable(protocol::public_text(why), 1000) + '\n'};
     };
     const bool answers = co_await dispatcher_.simulation_answers_within(simulation_patience);
     if (going_away_) {
