@@ -32,6 +32,7 @@ class RequestsInFlight {
     void expect(std::ptrdiff_t bytes);
 
     bool query_under_way = false;
+    std::size_t commands_under_way = 0; // commands whose answer does not exist yet
     void hold_back(v1::Request request);
     /// Removes and returns the oldest request that was held back; nullopt if there is none.
     std::optional<v1::Request> take_held_back();

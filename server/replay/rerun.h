@@ -6,6 +6,7 @@
 #pragma once
 
 #include "server/base/executor.h"
+#include "server/base/stop_check.h"
 #include "server/run_file/run_file.h"
 
 #include <deque>
@@ -18,6 +19,9 @@ namespace evod::replay {
 /// A command that check() accepts before it changes a world.
 using CheckedCommand = std::variant<simulation::PlaceEntities, simulation::RemoveEntities, simulation::SetFitness>;
 
+/// Why work ended that a StopCheck has stopped.
+base::Refusal cancelled_refusal();
+
 /// A command in the journal that changes a world: it changes parameters, plans such a change, cancels a planned change,
 /// places or removes entities, or sets fitness.
 struct WorldChange {
@@ -25,7 +29,7 @@ struct WorldChange {
     std::uint64_t tick = 0;  // the command was applied after this tick
     std::vector<parameters::Assignment> assignments;
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when the change takes effect; nullopt: at once
-    std::string by = {};                                        // the client that sent the command
+    base::Actor by = {};                                        // the client that sent the command
     std::optional<std::uint64_t> cancels = std::nullopt;        // id of the planned change that this command cancels
     std::optional<CheckedCommand> checked = std::nullopt;
 };
@@ -34,7 +38,9 @@ struct WorldChange {
 /// its tick is before that of the previous entry.
 ///
 /// after_entry  the journal entries up to and including this one are skipped.
-base::Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry = 0);
+/// stop         stops the work, which is then refused with UNAVAILABLE.
+base::Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry = 0,
+                                                     const base::StopCheck& stop = {});
 /// Like world_changes() above, for entries that have already been read.
 ///
 /// path  path of the file that contains the entries, for error messages.
@@ -90,8 +96,10 @@ class Rerun {
     ///
     /// tick           ticks since the run began; must be within the generation.
     /// history_count  maximum number of previous generations whose statistics the world gets.
+    /// stop           stops reading, which is then refused with UNAVAILABLE.
     static base::Result<Rerun> before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
-                                      std::size_t history_count, base::Executor& executor);
+                                      std::size_t history_count, base::Executor& executor,
+                                      const base::StopCheck& stop = {});
     /// Like before() above, for a tick that the file contains. Refused for any other tick.
     static base::Result<Rerun> before(run_file::RunFile& file, std::uint64_t tick, base::Executor& executor);
     /// Like before() above, for changes that have already been read.
@@ -146,7 +154,7 @@ class Rerun {
         apply_changes();
     }
     /// Reads the changes of a run. Refused if this program cannot simulate the run.
-    static base::Result<std::vector<WorldChange>> changes_of(run_file::RunFile& file);
+    static base::Result<std::vector<WorldChange>> changes_of(run_file::RunFile& file, const base::StopCheck& stop = {});
     /// after_entry  the world already contains the journal entries up to and including this one.
     static base::Result<Rerun> with_changes(const run_file::RunFile& file, simulation::World world,
                                             std::span<const WorldChange> changes, std::uint64_t after_entry);

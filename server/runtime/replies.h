@@ -53,6 +53,9 @@ struct ReplayDone {
     std::optional<v1::WorldInfo> shown = {}; // nullopt: the request was refused, or the replay is closed
 };
 
+/// Why a replay was closed, or is not opened, for another user.
+base::Refusal replay_taken_back();
+
 struct RunFound {
     FindRun mail;
     base::Result<FoundRun> run; // a fork is answered at once if there is none

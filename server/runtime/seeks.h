@@ -3,12 +3,13 @@
 //
 //   begin → read the file → simulate up to the moment → take_ended
 //
-// Owner        the loop of the replays, on its thread. A job queue reads the files.
-// Full         above seeks_max seeks, a new one is refused.
+// Owner        the loop of the replays, on its thread. Background jobs read the files.
+// Full         the places of replays (network/replay_places.h) bound the number of seeks: of the seeks that move a replay, one is
+//              read and one simulates.
 // Determinism  a seek reproduces a run bit for bit.
 #pragma once
 
-#include "server/jobs/job_queue.h"
+#include "server/runtime/file_jobs.h"
 #include "server/runtime/mailbox.h"
 
 #include <cstdint>
@@ -40,8 +41,6 @@ struct FileReplay {
 
 class Seeks {
   public:
-    static constexpr std::size_t seeks_max = 64;
-
     /// What a seek is for: to open a replay, to move one, or to bring a world for a fork.
     struct Purpose {
         std::variant<ReplayMail, CommandMail> request; // a command is a fork
@@ -66,26 +65,25 @@ class Seeks {
     struct Running {
         Request request;
         std::string user = {};
-        std::optional<replay::SeekStart> at = {}; // empty while the file is being read
-        std::uint64_t turn = 0;                   // when it last had a slice; the loop sets it
+        std::optional<replay::SeekStart> at = {};                      // empty while the file is being read
+        std::uint64_t turn = 0;                                        // when it last had a slice; the loop sets it
+        std::stop_source reading = std::stop_source{std::nostopstate}; // cancels the job that reads the file
     };
 
     /// All arguments must outlive this object. mailbox: of the loop, which gets the results of jobs.
-    Seeks(Mailbox& mailbox, jobs::JobQueue& jobs, base::Executor& executor)
+    Seeks(Mailbox& mailbox, FileJobs& jobs, base::Executor& executor)
         : mailbox_{mailbox}, jobs_{jobs}, executor_{executor} {}
 
     void begin(Request request);
     /// Handles the result of a job: the seek begins to simulate.
     void take(const SeekRead& mail);
+    /// Ends the seek that opens a replay for this request, if there is one.
+    void cancel_opening(std::uint64_t session, std::uint64_t request_id, const base::Refusal& why);
     /// Ends all seeks of a session.
     void cancel_of_session(std::uint64_t session);
     /// Ends all seeks that move a replay, because the replay is closed.
     void cancel_of_replay(const std::string& replay);
 
-    /// Returns the number of seeks that open a replay.
-    ///
-    /// session  counts only the seeks of this session; nullopt: all seeks.
-    std::size_t opening_count(std::optional<std::uint64_t> session = {}) const;
     /// All seeks, by number. Those whose file is being read cannot advance.
     std::map<std::uint64_t, Running>& all() { return seeks_; }
     bool under_way() const;
@@ -99,7 +97,7 @@ class Seeks {
     void cancel(const std::function<bool(const Running&)>& is_wanted, const base::Refusal& why);
 
     Mailbox& mailbox_;
-    jobs::JobQueue& jobs_;
+    FileJobs& jobs_;
     base::Executor& executor_;
     std::map<std::uint64_t, Running> seeks_; // key: number of the seek
     std::vector<Ended> ended_;

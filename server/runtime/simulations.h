@@ -11,6 +11,7 @@
 
 #include "server/metrics/worlds.h"
 #include "server/runtime/demand.h"
+#include "server/runtime/job_turns.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
 #include "server/runtime/replay_loop.h"
@@ -23,6 +24,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <thread>
 
 namespace evod::runtime {
 
@@ -39,7 +41,7 @@ class Simulations {
         base::Executor& executor; // for the live worlds; must outlive this object
         Clock& clock;             // must outlive this object
         LoopOutputs outputs;
-        simulation::Laboratory laboratory;
+        simulation::Laboratory laboratory;       // without the replays
         recording::Recorder* recorder = nullptr; // nullptr: runs are not stored
         std::optional<FileReplay> file = {};     // set if shows_file
     };
@@ -55,6 +57,8 @@ class Simulations {
     /// Sends a request for a replay. Unlike a command, it may need the run of a live world first. Returns false if the
     /// mailbox is full.
     bool try_send(ReplayMail mail);
+    /// Ends a replay that has lost its place, also one that is being opened.
+    void end_replay(EndReplay mail) { replays_.mailbox.push(std::move(mail)); }
     /// Sets which worlds are streamed, and whether any session is subscribed to events.
     void set_demand(WorldDemands worlds, bool events_wanted);
     bool events_wanted() const { return replays_.demand.events_wanted(); }
@@ -64,7 +68,10 @@ class Simulations {
     /// now: replies that wait for the disk come back with their receipts.
     std::optional<Answer> pass_on(Reply reply);
 
-    Mailbox::FillLevel fill() const { return shows_file_ ? replays_.mailbox.fill() : live_.mailbox.fill(); }
+    /// The places in the mailbox of the live worlds, by user.
+    base::Quota mailbox_places() const { return (shows_file_ ? replays_ : live_).mailbox.places(); }
+    /// The turns of all background jobs that compute.
+    JobTurns& job_turns() { return job_turns_; }
     /// Calls `use` with the name and the handle of each running thread. Must not be called after stop().
     void for_each_thread(const std::function<void(const char* name, pthread_t)>& use);
 
@@ -79,6 +86,8 @@ class Simulations {
 
   private:
     const bool shows_file_;
+    SteadyClock job_clock_;
+    JobTurns job_turns_{JobTurns::count_for(std::thread::hardware_concurrency()), job_clock_};
     std::unique_ptr<base::Executor> replay_executor_;
     Part live_, replays_;
     UnwrittenReplies unwritten_;

@@ -107,6 +107,7 @@ WatchedServer::WatchedServer()
                   sessions_,
                   streams_,
                   host_,
+                  network::LimitOptions{}.replays_max,
                   [this] { boost::asio::post(context_, [this] { go_away(); }); },
                   [] { return v1::Metrics{}; }}
     , loop_{{mailbox_, simulations_.part_of("").demand, executor_, clock()},
@@ -116,7 +117,8 @@ WatchedServer::WatchedServer()
     , replays_{{simulations_.mailbox_of("w@1"), simulations_.part_of("w@1").demand, executor_, clock()},
                {.events = [](auto&&...) {},
                 .snapshot = [](runtime::SnapshotPtr) {},
-                .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); }}} {
+                .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); }},
+               simulations_.job_turns()} {
     drawn = 0;
     host_.limits = network::limits_message({});
     host_.instance_id = "fuzz";
@@ -172,7 +174,7 @@ void WatchedServer::watch_mail() {
     for (runtime::Mail& mail : waiting) {
         if (auto* command = std::get_if<runtime::CommandMail>(&mail)) {
             const run_file::Origin& origin = command->origin;
-            require(carried_out_.emplace(run_file::user_of(origin), origin.client_key, origin.request_id).second);
+            require(carried_out_.emplace(origin.by.user, origin.client_key, origin.request_id).second);
             if (too_large(command->command)) {
                 const base::Result<simulation::Applied> refused =
                     base::refusal(base::RefusalCode::ResourceExhausted, "the world is too large");

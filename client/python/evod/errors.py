@@ -66,9 +66,11 @@ class Error(Exception):
     _code: ClassVar[int | None] = None  # the code of a subclass
 
     def __init__(self, message: str, violations: Iterable[Violation] = (), code: int | None = None) -> None:
-        self.message, self.violations = message, tuple(violations)
+        # Messages contain texts of servers, programs and files. A traceback prints them to a terminal.
+        self.message = "\n".join(map(printable, message.split("\n")))
+        self.violations = tuple(Violation(*map(printable, violation)) for violation in violations)
         self.code = self._code if code is None else code
-        super().__init__(message)
+        super().__init__(self.message)
 
     @property
     def code_name(self) -> str:
@@ -223,10 +225,7 @@ def printable(text: str) -> str:
 
 def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
-    violations = (
-        Violation(argument_of(printable(v.field)), _with_arguments(printable(v.allowed)), printable(v.got))
-        for v in status.violations
-    )
+    violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
     message = _with_arguments(printable(status.message))
     kind = AnswerExpired if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD else _OF_CODE.get(status.code, Error)
     error = kind(message, violations, status.code)

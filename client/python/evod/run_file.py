@@ -24,6 +24,7 @@ from evod.tables import html_table, pandas, read_csv
 from evod.v1 import commands_pb2
 
 _CAUSES = ("alive", "starved", "poisoned")
+_SENT_BY_SERVER = 2  # in the column sender of the journal
 
 
 def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None) -> RunFile:
@@ -249,7 +250,9 @@ class RunFile:
     def events(self) -> Any:
         """Returns the journal as a DataFrame: the applied commands, with each request as JSON."""
         rows = []
-        for number, tick, client, data in self._rows("SELECT number, tick, client, request FROM journal ORDER BY number"):
+        columns = "number, tick, sender, user, program, address, request"
+        for *sent, data in self._rows(f"SELECT {columns} FROM journal ORDER BY number"):
+            number, tick, sender, *who = sent
             try:
                 request = commands_pb2.Request.FromString(data)
             except google.protobuf.message.DecodeError:
@@ -258,8 +261,8 @@ class RunFile:
             request.ClearField("request_id")
             text = google.protobuf.json_format.MessageToJson(request, preserving_proto_field_name=True, indent=None)
             kind = request.WhichOneof("kind") or "unknown"
-            rows.append((number, tick, client, kind, text))
-        names = ("number", "tick", "client", "kind", "request")
+            rows.append((number, tick, "server" if sender == _SENT_BY_SERVER else "client", *who, kind, text))
+        names = ("number", "tick", "sender", "user", "program", "address", "kind", "request")
         return pandas().DataFrame(rows, columns=names)
 
     def lineage(self, of: tuple[int, int, int] | None = None) -> Any:
