@@ -16,9 +16,6 @@ namespace {
 
 using base::RefusalCode;
 
-// A generous estimate of the size of an answer to GetBreeding.
-constexpr std::ptrdiff_t breeding_bytes = 2 << 20;
-
 base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
                                        const std::stop_token& stop) {
     const auto file = run.run.open();
@@ -67,6 +64,7 @@ void BackgroundQueries::begin_export(Session& session, std::uint64_t request_id,
                     std::to_string(exports_max) + " exports are already running: try again when one has ended",
                     base::Reason::ExportsMax)));
     }
+    session.requests.expect(static_cast<std::ptrdiff_t>(runtime::ExportJob::held_bytes));
     Export begun{++last_export_id_, std::make_unique<runtime::ExportJob>(export_jobs_, outbox_, run, wanted)};
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
 }
@@ -96,6 +94,9 @@ void BackgroundQueries::ask(const Session& session, std::uint64_t request_id, Ex
 }
 
 void BackgroundQueries::cancel(Exports::iterator of) {
+    if (const SessionPtr session = find_session(sessions_, of->first)) {
+        session->requests.expect(-static_cast<std::ptrdiff_t>(runtime::ExportJob::held_bytes));
+    }
     of->second.job->request_stop();
     cancelled_.push_back(std::move(of->second.job));
     exports_.erase(of);
@@ -135,7 +136,10 @@ void BackgroundQueries::on_done(runtime::ExportPartDone done) {
 // ---- GetBreeding -----------------------------------------------------------------------------------------------
 
 void BackgroundQueries::ask_breeding(Session& session, const v1::Request& request, runtime::FoundRun run) {
-    waiting_breedings_.push_back({session.number(), request.request_id(), request.get_breeding(), std::move(run)});
+    const auto bytes = static_cast<std::ptrdiff_t>(sizeof(WaitingBreeding) + request.SpaceUsedLong());
+    session.requests.expect(bytes);
+    waiting_breedings_.push_back(
+        {session.number(), request.request_id(), request.get_breeding(), std::move(run), bytes});
     begin_next_breeding();
 }
 
@@ -156,11 +160,8 @@ void BackgroundQueries::begin_next_breeding() {
 
 void BackgroundQueries::begin(WaitingBreeding breeding) {
     const std::uint64_t session_number = breeding.session, query = ++last_query_;
-    if (const SessionPtr session = find_session(sessions_, session_number)) {
-        session->requests.expect(breeding_bytes);
-    }
     running_breedings_[query] = {
-        session_number,
+        session_number, breeding.bytes,
         breeding_jobs_.add([&outbox = outbox_, query, breeding = std::move(breeding)](const std::stop_token& stop) {
             outbox.reply(compute(query, breeding, stop));
         })};
@@ -185,8 +186,9 @@ runtime::BreedingDone BackgroundQueries::compute(std::uint64_t query, const Wait
 }
 
 void BackgroundQueries::on_done(runtime::BreedingDone done) {
-    if (const SessionPtr session = find_session(sessions_, running_breedings_.at(done.query).session)) {
-        session->requests.expect(-breeding_bytes);
+    const RunningBreeding& running = running_breedings_.at(done.query);
+    if (const SessionPtr session = find_session(sessions_, running.session)) {
+        session->requests.expect(-running.bytes);
         if (done.is_shortened) {
             limit_counters_.met(Limit::BreedingRows);
         }

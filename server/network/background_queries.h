@@ -65,9 +65,11 @@ class BackgroundQueries {
         std::uint64_t request_id;
         v1::GetBreeding request;
         runtime::FoundRun run;
+        std::ptrdiff_t bytes; // memory of the request
     };
     struct RunningBreeding {
         std::uint64_t session; // number of the session
+        std::ptrdiff_t bytes;  // memory of the request
         std::stop_source stop;
     };
     void begin_next_breeding();

@@ -20,6 +20,16 @@ void RequestsInFlight::expect(std::ptrdiff_t bytes) {
     }
 }
 
+void RequestsInFlight::begin_command(std::size_t bytes) {
+    ++commands_under_way_;
+    expect(static_cast<std::ptrdiff_t>(bytes));
+}
+
+void RequestsInFlight::end_command(std::size_t bytes) {
+    --commands_under_way_;
+    expect(-static_cast<std::ptrdiff_t>(bytes));
+}
+
 void RequestsInFlight::hold_back(v1::Request request) {
     const std::size_t bytes = request.SpaceUsedLong();
     held_back_bytes_.set(held_back_bytes_.bytes() + bytes);

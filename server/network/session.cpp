@@ -39,6 +39,8 @@ Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::u
     , address_prefix_{address_key(peer_.address())}
     , deadline_timer_{transport_->socket().get_executor()}
     , reader_bytes_{host.send_memory}
+    , subscription_bytes_{host.send_memory}
+    , replay_bytes_{host.send_memory}
     , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
     , empty_frames_{empty_frames_per_s_max, empty_frames_burst_max, host.clock->now()}
     , turn_{transport_->socket().get_executor()}
@@ -447,14 +449,14 @@ void Session::check_silence(runtime::Clock::duration watched) {
 }
 
 std::size_t Session::held_bytes() const {
-    return reader_bytes_.bytes() + requests.held_bytes() + queue_.held_bytes();
+    return reader_bytes_.bytes() + requests.held_bytes() + queue_.held_bytes() + subscription_bytes_.bytes() +
+           replay_bytes_.bytes();
 }
 
-void Session::evict() {
+void Session::evict(std::string_view why, std::size_t bytes) {
     host_.limit_counters.met(Limit::ClientBufferBytes);
-    log::warn({.session = number_, .client = by()},
-              "session {}: {} closed: all sessions use more than {} MiB of memory, and this one uses {} KiB", number_,
-              by(), client_buffer_bytes_max >> 20, held_bytes() >> 10);
+    log::warn({.session = number_, .client = by()}, "session {}: {} closed: {} of memory, and this one uses {} KiB",
+              number_, by(), why, bytes >> 10);
     close();
 }
 
@@ -484,7 +486,9 @@ void Session::close() {
     end(deadline_);
     queue_.drop_waiting();
     snapshots.clear();
+    count_subscriptions();
     reader_bytes_.set(0);
+    replay_bytes_.set(0); // the thread of the replays releases them soon
     requests.close();
     turn_.notify();
     writer_.notify();

@@ -94,7 +94,7 @@ class DispatcherTest : public Loopback {
     runtime::Simulations simulations{false, mailbox_capacity};
     runtime::Mailbox& mailbox = simulations.mailbox_of("");
     runtime::Outbox outbox{[] {}};
-    Streams streams{sessions, simulations};
+    Streams streams{sessions, simulations, memory};
     int shut_downs = 0;
     Dispatcher dispatcher{
         context, simulations, outbox, sessions, streams, host, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
