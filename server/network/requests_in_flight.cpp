@@ -31,7 +31,8 @@ void RequestsInFlight::end_command(std::size_t bytes) {
 }
 
 void RequestsInFlight::hold_back(v1::Request request) {
-    const std::size_t bytes = request.SpaceUsedLong();
+    constexpr std::size_t of_allocations = 64;
+    const std::size_t bytes = request.SpaceUsedLong() + of_allocations;
     held_back_bytes_.set(held_back_bytes_.bytes() + bytes);
     held_back_.push_back({std::move(request), bytes});
 }
