@@ -41,8 +41,8 @@ class SessionTest : public testing::Test {
         v1::SnapshotFrame about;
         about.set_sequence(sequence);
         about.set_world(name_of(sequence, name_bytes));
-        auto encoded =
-            std::make_shared<streaming::EncodedIsland>(std::move(about), codec::QuantisedSnapshot{}, compressor, &buffers);
+        auto encoded = std::make_shared<streaming::EncodedIsland>(std::move(about), codec::QuantisedSnapshot{},
+                                                                  compressor, &buffers);
         session->snapshots.offer(
             subscription_id, island,
             std::make_shared<streaming::StreamedSnapshot>(std::move(encoded), streaming::Form::Plain, nullptr,
