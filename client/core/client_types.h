@@ -83,6 +83,8 @@ struct Options {
     std::chrono::milliseconds connect_timeout{5000}; // for connecting, and again for receiving the Welcome
     std::chrono::milliseconds backoff_min{100};      // wait before the first attempt to reconnect; doubles each time
     std::chrono::milliseconds backoff_max{5000};
+    // Requests fail if there has been no session for this long; nullopt: they wait until their own timeout.
+    std::optional<std::chrono::milliseconds> unreachable_max = {};
     std::size_t events_kept = 10'000;
 };
 

@@ -17,6 +17,7 @@ TimePoint after(TimePoint now, std::chrono::milliseconds wait) {
 Ending refused(const Endpoint& server, const evod::v1::Status& status, const char* did, bool final) {
     return {.reason = "the server at " + to_text(server) + " " + did + ": " + to_text(status),
             .final = final,
+            .late = status.code() == evod::v1::CODE_RESOURCE_EXHAUSTED,
             .token_needed = status.code() == evod::v1::CODE_UNAUTHENTICATED,
             .refusal = status};
 }
@@ -81,10 +82,7 @@ void ProtocolState::received(std::span<const std::byte> bytes, TimePoint now) {
 }
 
 void ProtocolState::lost(Ending ending, TimePoint now) {
-    if (session_.goodbye) { // if the token was revoked, reconnecting would not help
-        const bool revoked = session_.goodbye->code() == evod::v1::CODE_UNAUTHENTICATED;
-        ending = refused(options_.server, *session_.goodbye, "ended the session", revoked);
-    } else if (session_.going_away) {
+    if (session_.going_away) {
         ending = {.reason = "the server at " + to_text(options_.server) + " was shut down"};
     }
     end_session(std::move(ending), now);
@@ -102,6 +100,9 @@ void ProtocolState::advance(TimePoint now) {
     }
     const bool explained = status_.state != State::Connected && !status_.reason.empty();
     requests_.expire(now, explained ? ": " + status_.reason : "");
+    if (now >= give_up_at()) {
+        requests_.give_up({.kind = Error::Kind::NoConnection, .what = status_.reason});
+    }
 }
 
 ProtocolState::Output ProtocolState::take_output() {
@@ -110,6 +111,9 @@ ProtocolState::Output ProtocolState::take_output() {
     }
     output_.connection_wanted = connection_wanted();
     output_.wake_at = std::min(deadline_, requests_.next_deadline());
+    if (requests_.has_request_of_program()) {
+        output_.wake_at = std::min(output_.wake_at, give_up_at());
+    }
     output_.outcomes = requests_.take_outcomes();
     output_.snapshots = subscriptions_.take_snapshots();
     output_.answers = subscriptions_.answers();
@@ -121,6 +125,10 @@ void ProtocolState::request(evod::v1::Request request, Handler handler, std::chr
                             TimePoint now) {
     requests_.add(std::move(request),
                   {.handler = std::move(handler), .timeout = timeout, .deadline = after(now, timeout)});
+}
+
+TimePoint ProtocolState::give_up_at() const {
+    return lost_since_ && options_.unreachable_max ? after(*lost_since_, *options_.unreachable_max) : TimePoint::max();
 }
 
 void ProtocolState::close() {
@@ -148,6 +156,12 @@ void ProtocolState::end_session(Ending ending, TimePoint now) {
     requests_.end_session({.kind = Error::Kind::NoConnection, .what = status_.reason}, another);
     deadline_ = TimePoint::max();
     if (another) {
+        if (status_.connected_count > 0 && !lost_since_) {
+            lost_since_ = now;
+        }
+        // The server ended the session because it is full: another attempt soon would take the place of another client, or
+        // of another session of the same user.
+        backoff_ = ending.late ? options_.backoff_max : backoff_;
         // Waits are random, so that the clients of a server do not all reconnect at the same moment.
         const auto spread = std::uniform_real_distribution{0.5, 1.0}(jitter_);
         deadline_ = now + std::chrono::duration_cast<std::chrono::milliseconds>(backoff_ * spread);
@@ -165,7 +179,7 @@ void ProtocolState::take_frame(const codec::Frame& frame, TimePoint now) {
         } else if (status_.state != State::Connected) {
             take_first_message(*message, now);
         } else {
-            take_message(*std::move(message));
+            take_message(*std::move(message), now);
         }
     } else if (status_.state != State::Connected) {
         end_session({.reason = server + " is not an evod server: its first message is a snapshot", .final = true}, now);
@@ -198,23 +212,31 @@ void ProtocolState::take_first_message(const evod::v1::ServerMessage& message, T
         status_.welcome = message.welcome();
         ++status_.connected_count;
         deadline_ = TimePoint::max();
+        lost_since_.reset();
         backoff_ = options_.backoff_min;
-        requests_.set_limits(message.welcome().limits());
+        requests_.begin_session(message.welcome().limits());
         // Subscriptions are sent first, so that the program receives the events that its requests cause.
         subscriptions_.begin_session();
     }
 }
 
-void ProtocolState::take_message(evod::v1::ServerMessage message) {
+void ProtocolState::take_message(evod::v1::ServerMessage message, TimePoint now) {
     if (message.has_response()) {
-        if (const auto subscription = requests_.answer(message.response())) {
-            subscriptions_.take_answer(*subscription, std::move(*message.mutable_response()));
+        const auto answered = requests_.answer(message.response());
+        if (answered && answered->sets_view) {
+            subscriptions_.take_view_answer(answered->handle, message.response());
+        } else if (answered) {
+            subscriptions_.take_answer(answered->handle, std::move(*message.mutable_response()));
         }
     } else if (message.has_event()) {
         session_.going_away = session_.going_away || message.event().has_server_going_away();
         output_.events.push_back(std::move(*message.mutable_event()));
     } else if (message.has_goodbye()) {
-        session_.goodbye = message.goodbye().status();
+        // Another session would end for the same reason.
+        const auto code = message.goodbye().status().code();
+        const bool final = code == evod::v1::CODE_UNAUTHENTICATED || code == evod::v1::CODE_PERMISSION_DENIED ||
+                           code == evod::v1::CODE_INVALID_ARGUMENT;
+        end_session(refused(options_.server, message.goodbye().status(), "ended the session", final), now);
     }
 }
 

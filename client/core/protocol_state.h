@@ -34,6 +34,7 @@ class EventQueue {
 struct Ending {
     std::string reason;
     bool final = false;                           // another attempt to connect would fail too
+    bool late = false;                            // the server is full: the next attempt follows after backoff_max
     bool token_needed = false;                    // the server requires a (different) token
     std::optional<evod::v1::Status> refusal = {}; // nullopt: the session ended for another reason
 };
@@ -58,8 +59,8 @@ class ProtocolState {
     // ---- the TCP connection
     void opened(TimePoint now);
     void received(std::span<const std::byte> bytes, TimePoint now);
-    /// Call when the TCP connection was lost or could not be opened. `ending` applies if the server stated no other
-    /// reason.
+    /// Call when the TCP connection was lost or could not be opened. `ending` applies if the server has not announced its
+    /// shutdown.
     void lost(Ending ending, TimePoint now);
     /// Ends attempts to connect and requests whose time limit has passed. Begins the next attempt to connect when it is
     /// due.
@@ -77,8 +78,7 @@ class ProtocolState {
     /// State that each attempt to connect resets.
     struct SessionState {
         bool opened = false;
-        bool going_away = false;                 // the server has announced its shutdown
-        std::optional<evod::v1::Status> goodbye; // the server's reason for ending the session
+        bool going_away = false; // the server has announced its shutdown
         codec::FrameReader reader{codec::client_limits};
     };
     bool connection_wanted() const { return status_.state == State::Connecting || status_.state == State::Connected; }
@@ -86,7 +86,9 @@ class ProtocolState {
     void end_session(Ending ending, TimePoint now);
     void take_frame(const codec::Frame& frame, TimePoint now);
     void take_first_message(const evod::v1::ServerMessage& message, TimePoint now);
-    void take_message(evod::v1::ServerMessage message);
+    void take_message(evod::v1::ServerMessage message, TimePoint now);
+    /// The time at which requests fail because there has been no session for too long.
+    TimePoint give_up_at() const;
 
     const Options options_;
     ConnectionStatus status_;
@@ -94,6 +96,7 @@ class ProtocolState {
     Output output_;
     RequestQueue requests_;
     Subscriptions subscriptions_{requests_};
+    std::optional<TimePoint> lost_since_; // when the last session ended; nullopt: there is one, or there was none yet
     TimePoint deadline_; // of the connection or the Welcome; after a loss: the time of the next attempt to connect
     std::chrono::milliseconds backoff_;
     std::minstd_rand jitter_;

@@ -1,5 +1,7 @@
 #include "client/core/subscriptions.h"
 
+#include "client/core/session_requests.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -29,16 +31,21 @@ std::string acknowledgement_of(const evod::v1::SnapshotFrame& frame) {
 } // namespace
 
 void Subscriptions::add(SubscriptionHandle handle, evod::v1::Request request) {
-    subscriptions_[handle].request = std::move(request);
-    this->request(handle, false);
+    Subscription& subscription = subscriptions_[handle];
+    subscription.request = std::move(request);
+    subscription.ended = requests_.has_ended(replay_in(subscription.request));
+    if (!subscription.ended) {
+        this->request(handle, false);
+    } else if (in_session_) {
+        refuse_ended(handle);
+    }
 }
 
 void Subscriptions::set_view(SubscriptionHandle handle, evod::v1::View view) {
     const auto entry = subscriptions_.find(handle);
     if (entry != subscriptions_.end() && entry->second.request.has_subscribe_snapshots()) {
-        *entry->second.request.mutable_subscribe_snapshots()->mutable_view() = std::move(view);
-        entry->second.view_changed = true;
-        send_view(entry->second);
+        entry->second.wanted_view = std::move(view);
+        send_view(handle, entry->second);
     }
 }
 
@@ -53,18 +60,27 @@ void Subscriptions::remove(SubscriptionHandle handle) {
 
 void Subscriptions::begin_session() {
     for (const auto& [handle, subscription] : subscriptions_) {
-        if (!requests_.has_request_for(handle)) {
+        if (subscription.ended) {
+            refuse_ended(handle);
+        } else if (!requests_.has_request_for(handle)) {
             request(handle, true);
         }
     }
+    in_session_ = true;
 }
 
 void Subscriptions::end_session() {
     answers_.clear();
     for (auto& [handle, subscription] : subscriptions_) {
+        subscription.ended = subscription.ended || (in_session_ && !replay_in(subscription.request).empty());
+        if (subscription.sent_view && !subscription.wanted_view) {
+            subscription.wanted_view = std::move(subscription.sent_view); // whether the server accepts it is not known
+        }
+        subscription.sent_view.reset();
         subscription.server_id.reset();
         subscription.islands.clear();
     }
+    in_session_ = false;
 }
 
 void Subscriptions::take_answer(SubscriptionHandle handle, evod::v1::Response response) {
@@ -76,9 +92,21 @@ void Subscriptions::take_answer(SubscriptionHandle handle, evod::v1::Response re
     }
     if (accepted(response)) {
         entry->second.server_id = server_id;
-        send_view(entry->second);
+        send_view(handle, entry->second);
     }
     answers_[handle] = std::move(response);
+}
+
+void Subscriptions::take_view_answer(SubscriptionHandle handle, const evod::v1::Response& response) {
+    const auto entry = subscriptions_.find(handle);
+    if (entry == subscriptions_.end() || !entry->second.sent_view) {
+        return; // the program has unsubscribed since
+    }
+    if (accepted(response)) {
+        *entry->second.request.mutable_subscribe_snapshots()->mutable_view() = *std::move(entry->second.sent_view);
+    }
+    entry->second.sent_view.reset();
+    send_view(handle, entry->second);
 }
 
 std::string Subscriptions::take_snapshot(evod::v1::SnapshotFrame frame, ConnectionStatus& status) {
@@ -119,19 +147,21 @@ std::string Subscriptions::take_snapshot(evod::v1::SnapshotFrame frame, Connecti
 }
 
 void Subscriptions::request(SubscriptionHandle handle, bool first) {
-    Subscription& subscription = subscriptions_[handle];
-    subscription.view_changed = false;
-    requests_.add(subscription.request, {.subscription = handle, .first = first});
+    requests_.add(subscriptions_[handle].request, {.subscription = handle, .first = first});
 }
 
-void Subscriptions::send_view(Subscription& subscription) {
-    if (subscription.view_changed && subscription.server_id) {
-        subscription.view_changed = false;
+void Subscriptions::send_view(SubscriptionHandle handle, Subscription& subscription) {
+    if (subscription.wanted_view && !subscription.sent_view && subscription.server_id) {
+        subscription.sent_view = std::exchange(subscription.wanted_view, std::nullopt);
         evod::v1::Request request;
         request.mutable_set_view()->set_subscription_id(*subscription.server_id);
-        *request.mutable_set_view()->mutable_view() = subscription.request.subscribe_snapshots().view();
-        requests_.add(std::move(request), {.first = true});
+        *request.mutable_set_view()->mutable_view() = *subscription.sent_view;
+        requests_.add(std::move(request), {.subscription = handle, .first = true});
     }
+}
+
+void Subscriptions::refuse_ended(SubscriptionHandle handle) {
+    *answers_[handle].mutable_status() = replay_has_ended(replay_in(subscriptions_[handle].request));
 }
 
 void Subscriptions::unsubscribe_from(std::uint32_t server_id) {

@@ -43,7 +43,7 @@ class Gate {
     /// Authenticates a client. Refuses with UNAUTHENTICATED if the token is missing or unknown, and with
     /// RESOURCE_EXHAUSTED if the token is unknown and the address must wait.
     ///
-    /// address  key of the rate limit: the IPv4 address, or the /64 prefix of the IPv6 address.
+    /// address  key of the rate limit: the IPv4 address, or the /48 prefix of the IPv6 address.
     base::Result<Visitor> admit(const std::string& token, const std::string& address, Clock::time_point now);
 
     /// Reads the token file again if it has changed, and returns whether it has changed. While the file is not

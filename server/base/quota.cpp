@@ -43,9 +43,9 @@ std::size_t Quota::held(std::string_view user) const {
 }
 
 const std::string& Quota::largest() const {
-    static const std::string nobody;
+    static const std::string no_user;
     const auto most = std::ranges::max_element(users_, {}, [](const auto& user) { return user.second; });
-    return most == users_.end() ? nobody : most->first;
+    return most == users_.end() ? no_user : most->first;
 }
 
 } // namespace evod::base

@@ -37,7 +37,7 @@ class Quota {
     std::size_t share() const { return (total_ + 1) / 2; }
     std::size_t held() const { return held_; }
     std::size_t held(std::string_view user) const;
-    /// The user who holds the most; empty: nobody holds anything. Of several, the first by name.
+    /// The user who holds the most; empty: no user holds anything. Of several, the first by name.
     const std::string& largest() const;
 
   private:

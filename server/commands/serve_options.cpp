@@ -110,7 +110,7 @@ base::Result<network::ServerOptions> serving(std::variant<network::LiveWorlds, n
     }
     return network::ServerOptions{.worlds = std::move(worlds),
                                   .listeners = std::move(listeners),
-                                  .session_bounds = options.session_bounds,
+                                  .limits = options.limits,
                                   .threads = options.sharing.threads.value_or(default_thread_count())};
 }
 
@@ -150,13 +150,16 @@ void add_server_options(Command& command, ServeOptions& options) {
         .check(port_number)
         .show_default();
     add_http_options(command, options);
-    const auto add_sessions = [&](const char* name, std::uint32_t& count, const char* help) {
+    const auto add_limit = [&](const char* name, std::uint32_t& count, const char* help) {
         command.add_option(name, &count, help).check(WholeNumber{1, 1'000'000}).show_default();
     };
-    add_sessions("--sessions-max", options.session_bounds.sessions_max,
-                 "Maximum number of simultaneous sessions; each session uses one file descriptor");
-    add_sessions("--sessions-per-address-max", options.session_bounds.sessions_per_address_max,
-                 "Maximum number of simultaneous sessions from one IPv4 address or one IPv6 /64 prefix");
+    add_limit(
+        "--sessions-max", options.limits.sessions_max,
+        "Maximum number of simultaneous sessions, each of which uses one file descriptor; a user may have half of "
+        "them, without a token an address");
+    add_limit("--worlds-max", options.limits.worlds_max, "Maximum number of worlds, without replays");
+    add_limit("--replays-max", options.limits.replays_max,
+              "Maximum number of simultaneous replays; a user may have half of them");
     command.option_group("Access and TLS");
     command.add_flag(
         "--require-token", &options.token_needed,

@@ -37,7 +37,7 @@ struct ServeOptions {
     std::string data_folder;
     bool keep_nothing = false;
     bool token_needed = false;
-    network::SessionBounds session_bounds;
+    network::LimitOptions limits;
     struct Tls { // files; empty: the option was not given
         std::string certificate, key, client_ca;
     } tls;

@@ -2,7 +2,6 @@
 
 #include "server/base/assert.h"
 #include "server/log/log.h"
-#include "server/protocol/actors.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
@@ -58,7 +57,22 @@ void count_exceeded_limits(const v1::Request& request, LimitCounters& counters) 
     }
 }
 
+/// As account_of() for the session that the actor had.
+std::string account_of(const base::Actor& actor) {
+    boost::system::error_code error;
+    const auto address = asio::ip::make_address(actor.address.substr(0, actor.address.rfind(':')), error);
+    return !actor.user.empty() ? actor.user : error ? actor.address : address_key(address);
+}
+
+UserKey key_of(const run_file::Origin& origin) {
+    return {origin.by.user, origin.client_key};
+}
+
 } // namespace
+
+std::string account_of(const Session& session) {
+    return session.visitor().name.empty() ? session.address_prefix() : session.visitor().name;
+}
 
 base::Refusal mailbox_full(LimitCounters& limit_counters) {
     limit_counters.met(Limit::MailboxCommands);
@@ -85,11 +99,17 @@ Commands::Commands(asio::io_context& context, runtime::Simulations& simulations,
                    [this] { limit_counters_.met(Limit::ClientKeys); }}
     , own_key_{"evod " + to_text(runtime::draw_run_id())} {}
 
-void Commands::restore(const std::vector<run_file::JournalEntry>& answers) {
+void Commands::restore(const std::vector<run_file::UsedKey>& keys, const std::vector<run_file::JournalEntry>& answers) {
+    for (const run_file::UsedKey& key : keys) {
+        if (key.by.kind == base::Actor::Kind::Client) {
+            reply_cache_.restore_evicted({key.by.user, key.client_key}, account_of(key.by), key.highest_id);
+        }
+    }
     for (const run_file::JournalEntry& entry : answers) {
-        reply_cache_.restore(ReplyCache::key_of(run_file::user_of(entry.origin), entry.origin.client_key),
-                             entry.origin.request_id, entry.origin.request,
-                             std::make_shared<const std::string>(entry.answer));
+        if (entry.origin.by.kind == base::Actor::Kind::Client) {
+            reply_cache_.restore(key_of(entry.origin), account_of(entry.origin.by), entry.origin.request_id,
+                                 entry.origin.request, std::make_shared<const std::string>(entry.answer));
+        }
     }
 }
 
@@ -110,19 +130,18 @@ void Commands::handle(Session& session, const v1::Request& request) {
         return session.answer(refused(command.error()));
     }
 
-    const std::string key = ReplyCache::key_of(session.visitor().name, request.client_key());
+    const UserKey key{session.visitor().name, request.client_key()};
     std::string bytes = bytes_of(request);
     // The command, its bytes in the mail, and those in the reply cache.
     const std::size_t held = request.SpaceUsedLong() + 2 * bytes.size();
-    const auto verdict = reply_cache_.begin(
-        key, id, bytes,
-        [weak = session.weak_from_this(), under_way = std::make_shared<const UnderWay>(session, held)](
-
-            const auto& frame) {
-            if (const auto waiting = weak.lock()) {
-                waiting->answer(frame);
-            }
-        });
+    const auto verdict =
+        reply_cache_.begin(key, session.account(), id, bytes,
+                           [weak = session.weak_from_this(),
+                            under_way = std::make_shared<const UnderWay>(session, held)](const auto& frame) {
+                               if (const auto waiting = weak.lock()) {
+                                   waiting->answer(frame);
+                               }
+                           });
     switch (verdict) {
     case ReplyCache::Verdict::Known:
         return;
@@ -141,7 +160,7 @@ void Commands::handle(Session& session, const v1::Request& request) {
     case ReplyCache::Verdict::New:
         break;
     }
-    if (!send(*std::move(command), request, std::move(bytes), session.by(), session.number())) {
+    if (!send(*std::move(command), request, std::move(bytes), &session)) {
         reply_cache_.forget(key, id, encode_response(refused(mailbox_full(limit_counters_))));
     }
 }
@@ -154,31 +173,33 @@ void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> leas
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;
     }
-    send(*std::move(command), request, bytes_of(request), std::string{protocol::by_the_server}, 0);
+    send(*std::move(command), request, bytes_of(request), nullptr);
 }
 
-bool Commands::send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
-                    std::uint64_t session) {
+bool Commands::send(simulation::Command command, const v1::Request& request, std::string bytes, const Session* sender) {
+    base::Actor by = sender != nullptr ? sender->actor() : base::server_actor();
     if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
         change->by = by;
     }
     return simulations_.try_send(runtime::CommandMail{.command = std::move(command),
-                                                      .origin = {.client = std::move(by),
+                                                      .origin = {.by = std::move(by),
                                                                  .client_key = request.client_key(),
                                                                  .request_id = request.request_id(),
                                                                  .request = std::move(bytes)},
                                                       .request_name = protocol::name_of(request),
-                                                      .session = session});
+                                                      .session = sender != nullptr ? sender->number() : 0,
+                                                      .user = sender != nullptr ? sender->account() : ""});
 }
 
 void Commands::on_done(runtime::CommandDone done) {
     const runtime::CommandMail& mail = done.mail;
-    const std::string key = ReplyCache::key_of(run_file::user_of(mail.origin), mail.origin.client_key);
     const auto frame = std::make_shared<const std::string>(std::move(done.frame));
     if (!done.outcome) {
-        return on_refused(mail, done.outcome.error(), key, frame);
+        return on_refused(mail, done.outcome.error(), frame);
     }
-    reply_cache_.finish(key, mail.origin.request_id, frame);
+    if (mail.session != 0) { // the server sends each of its own commands once, so they have no entry in the cache
+        reply_cache_.finish(key_of(mail.origin), mail.origin.request_id, frame);
+    }
     const std::string& world = done.outcome->world;
     if (std::holds_alternative<simulation::DeleteWorld>(mail.command)) {
         streams_.forget_world(world);
@@ -189,19 +210,18 @@ void Commands::on_done(runtime::CommandDone done) {
     if (!done.lease) {
         leases_.end(world);
     } else if (std::holds_alternative<simulation::RunUntilTick>(mail.command) && grants_leases_) {
-        leases_.begin(world, *done.lease, key);
+        leases_.begin(world, *done.lease, key_of(mail.origin));
     }
 }
 
-void Commands::on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
-                          const SharedBytes& frame) {
+void Commands::on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const SharedBytes& frame) {
     if (mail.session == 0) {
         if (why.reason != base::Reason::NoLease) {
             log::error("the server's own command {} is refused: {}", mail.request_name, to_text(why));
         }
         return;
     }
-    log_refusal(mail.session, mail.origin.client, mail.origin.request_id, why);
+    log_refusal(mail.session, to_text(mail.origin.by), mail.origin.request_id, why);
     if (why.reason == base::Reason::PlannedChangesMax) {
         limit_counters_.met(Limit::PlannedChanges);
     } else if (why.reason == base::Reason::PlacedMax) {
@@ -211,16 +231,16 @@ void Commands::on_refused(const runtime::CommandMail& mail, const base::Refusal&
     }
     // A temporary refusal is not cached, so the same request may succeed when the client sends it again.
     if (why.code == base::RefusalCode::Unavailable || why.code == base::RefusalCode::ResourceExhausted) {
-        reply_cache_.forget(key, mail.origin.request_id, frame);
+        reply_cache_.forget(key_of(mail.origin), mail.origin.request_id, frame);
     } else {
-        reply_cache_.finish(key, mail.origin.request_id, frame);
+        reply_cache_.finish(key_of(mail.origin), mail.origin.request_id, frame);
     }
 }
 
 std::optional<base::Refusal> Commands::renew_lease(const Session& session, const v1::Request& request,
                                                    const std::string& world) {
     const std::string& key = request.client_key();
-    if (leases_.renew(world, ReplyCache::key_of(session.visitor().name, key))) {
+    if (leases_.renew(world, {session.visitor().name, key})) {
         return std::nullopt;
     }
     return base::Refusal{.code = base::RefusalCode::FailedPrecondition,

@@ -19,6 +19,9 @@ namespace evod::network {
 /// Returns the refusal for a full mailbox, and counts it.
 base::Refusal mailbox_full(LimitCounters& limit_counters);
 
+/// Whose share of a pool the session uses: its user, or its address prefix if it has no token.
+std::string account_of(const Session& session);
+
 class Commands {
   public:
     /// All arguments must outlive this object.
@@ -36,8 +39,10 @@ class Commands {
     /// subscribers.
     void on_done(runtime::CommandDone done);
 
-    /// Adds to the reply cache the answers that were given before this server started.
-    void restore(const std::vector<run_file::JournalEntry>& answers);
+    /// Adds to the reply cache what was known before this server started.
+    ///
+    /// keys  oldest first. They may contain keys of `answers`.
+    void restore(const std::vector<run_file::UsedKey>& keys, const std::vector<run_file::JournalEntry>& answers);
     /// Starts a lease that was granted before the server started. When it expires, the world continues.
     void restart_lease(const std::string& world) { leases_.begin(world, 0, {}); }
     /// Returns nullopt if the session's user holds the lease of the world with the client_key of this request; otherwise
@@ -52,13 +57,9 @@ class Commands {
     /// Puts a command into the mailbox. Returns false if the mailbox is full.
     ///
     /// bytes    the serialised request.
-    /// by       the sender, in the text format that protocol::actor_of() parses.
-    /// session  number of the sender's session; 0: the server itself.
-    bool send(simulation::Command command, const v1::Request& request, std::string bytes, std::string by,
-              std::uint64_t session);
-    /// key  the sender's key in the reply cache.
-    void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const std::string& key,
-                    const SharedBytes& frame);
+    /// sender   nullptr: the server itself.
+    bool send(simulation::Command command, const v1::Request& request, std::string bytes, const Session* sender);
+    void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const SharedBytes& frame);
 
     runtime::Simulations& simulations_;
     Streams& streams_;

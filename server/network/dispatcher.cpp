@@ -5,6 +5,7 @@
 #include "server/log/log.h"
 #include "server/network/description.h"
 #include "server/network/subscription_requests.h"
+#include "server/protocol/actors.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
 #include "server/protocol/queries.h"
@@ -30,10 +31,9 @@ replay::WantedMoment wanted(const v1::RunMoment& moment) {
 
 /// Converts a request of the kind REQUEST_KIND_REPLAY into mail for the simulation threads.
 runtime::ReplayMail replay_mail(const v1::Request& request, const Session& session) {
-    const std::string& user = session.visitor().name;
     runtime::ReplayMail mail{.request = {},
                              .session = session.number(),
-                             .user = user.empty() ? session.address_prefix() : user,
+                             .user = session.account(),
                              .request_id = request.request_id(),
                              .request_name = protocol::name_of(request)};
     const std::string world = protocol::lookup_name(protocol::world_of(request));
@@ -52,7 +52,7 @@ runtime::ReplayMail replay_mail(const v1::Request& request, const Session& sessi
 /// Converts a valid request into the table that an export writes.
 replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     replay::WantedTable to;
-    to.only_users = role < access::Role::Admin;
+    to.only_users = role < access::Role::Controller;
     to.table = static_cast<replay::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
     to.format =
         request.format() == v1::TEXT_FORMAT_JSON_LINES ? replay::Table::Format::JsonLines : replay::Table::Format::Csv;
@@ -101,8 +101,8 @@ base::Refusal shutting_down_refusal() {
 } // namespace
 
 Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
-                       const Sessions& sessions, Streams& streams, SessionHost& host, std::function<void()> shut_down,
-                       std::function<v1::Metrics()> metrics)
+                       const Sessions& sessions, Streams& streams, SessionHost& host, std::size_t replays_max,
+                       std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
     : simulations_{simulations}
     , sessions_{sessions}
     , streams_{streams}
@@ -111,7 +111,8 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulati
     , metrics_{std::move(metrics)}
     , background_queries_{outbox, sessions, host.limit_counters}
     , heartbeat_{simulations.mailbox_of("")}
-    , commands_{context, simulations, streams, host.limit_counters} {}
+    , commands_{context, simulations, streams, host.limit_counters}
+    , replay_places_{replays_max} {}
 
 void Dispatcher::handle(Session& session, v1::Request request) {
     const auto refuse_it = [&](const base::Refusal& refused) {
@@ -173,10 +174,7 @@ void Dispatcher::serve(Session& session, v1::Request request) {
         }
         return ask(session, std::move(request)); // the simulation thread finds the world of the new subscription
     case v1::REQUEST_KIND_REPLAY:
-        if (!simulations_.try_send(replay_mail(request, session))) {
-            session.answer(protocol::refusing(id, mailbox_full(host_.limit_counters)));
-        }
-        return;
+        return serve_replay(session, request);
     case v1::REQUEST_KIND_EXPORT:
         if (request.has_continue_export()) {
             return background_queries_.send_next_part(session, id, request.continue_export());
@@ -242,7 +240,7 @@ void Dispatcher::on_damaged(const simulation::DamagedWorld& damaged) {
 }
 
 bool Dispatcher::ask(Session& session, std::uint64_t request_id, std::string_view world, runtime::Mail mail) {
-    if (simulations_.mailbox_of(world).try_push(std::move(mail))) {
+    if (simulations_.mailbox_of(world).try_push(std::move(mail), session.account())) {
         return true;
     }
     session.answer(protocol::refusing(request_id, mailbox_full(host_.limit_counters)));
@@ -253,7 +251,7 @@ void Dispatcher::ask(Session& session, v1::Request request) {
     const auto asked = std::make_shared<const v1::Request>(std::move(request));
     const bool users_only = session.visitor().role < access::Role::Controller;
     if (ask(session, asked->request_id(), protocol::world_of(*asked),
-            runtime::QueryMail{session.number(), asked, users_only})) {
+            runtime::QueryMail{session.number(), asked, users_only, session.account()})) {
         session.requests.query_under_way = true;
         session.requests.expect(held_bytes(*asked));
     }
@@ -309,11 +307,51 @@ void Dispatcher::query(Session& session, v1::Request request) {
     ask(session, std::move(request));
 }
 
+void Dispatcher::serve_replay(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    if (request.has_open_replay()) {
+        const auto lost =
+            replay_places_.take({.session = session.number(), .request_id = id, .account = session.account()});
+        if (!lost) {
+            host_.limit_counters.met(Limit::Replays);
+            return session.answer(protocol::refusing(id, lost.error()));
+        }
+        if (*lost) {
+            end_replay(**lost);
+        }
+    }
+    if (!simulations_.try_send(replay_mail(request, session))) {
+        replay_places_.give_back(session.number(), id);
+        session.answer(protocol::refusing(id, mailbox_full(host_.limit_counters)));
+    }
+}
+
+void Dispatcher::end_replay(const ReplayPlaces::Place& place) {
+    host_.limit_counters.took_back(Limit::Replays);
+    simulations_.end_replay({.session = place.session, .request_id = place.request_id, .name = place.name});
+    if (place.name.empty()) {
+        return; // its request will be refused
+    }
+    if (const SessionPtr session = find_session(sessions_, place.session)) {
+        session->replays.erase(place.name);
+    }
+    streams_.forget_world(place.name);
+    v1::Event event;
+    event.set_world(place.name);
+    *event.mutable_world_deleted()->mutable_by() = protocol::actor_of_kind(v1::ACTOR_KIND_SERVER);
+    streams_.publish(std::move(event));
+}
+
 void Dispatcher::on_done(runtime::ReplayDone done) {
     const runtime::ReplayMail& mail = done.mail;
     const bool opens = std::holds_alternative<runtime::OpenReplay>(mail.request);
-    if (opens && !done.world && done.world.error().code == base::RefusalCode::ResourceExhausted) {
-        host_.limit_counters.met(Limit::Replays);
+    if (opens && !done.world) {
+        replay_places_.give_back(mail.session, mail.request_id);
+    } else if (opens && !replay_places_.open(mail.session, mail.request_id, *done.world)) {
+        simulations_.end_replay({.name = *done.world}); // it has lost its place while it was being opened
+        done.world = runtime::replay_taken_back();
+    } else if (done.world && std::holds_alternative<runtime::CloseReplay>(mail.request)) {
+        replay_places_.close(*done.world);
     }
     const SessionPtr session = find_session(sessions_, mail.session);
     if (!session) {
@@ -369,6 +407,7 @@ void Dispatcher::on_done(runtime::RunFound done) {
 
 void Dispatcher::forget(const Session& session) {
     background_queries_.forget(session);
+    replay_places_.forget(session.number());
     simulations_.forget(session.number());
 }
 

@@ -9,6 +9,7 @@
 #include "server/network/background_queries.h"
 #include "server/network/commands.h"
 #include "server/network/heartbeat.h"
+#include "server/network/replay_places.h"
 #include "server/network/session.h"
 #include "server/network/streams.h"
 #include "server/protocol/queries.h"
@@ -21,11 +22,12 @@ class Dispatcher {
   public:
     /// All arguments must outlive the dispatcher.
     ///
-    /// shut_down  shuts the server down.
-    /// metrics    returns the current metrics.
+    /// replays_max  maximum number of replays of all sessions.
+    /// shut_down    shuts the server down.
+    /// metrics      returns the current metrics.
     Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
-               const Sessions& sessions, Streams& streams, SessionHost& host, std::function<void()> shut_down,
-               std::function<v1::Metrics()> metrics);
+               const Sessions& sessions, Streams& streams, SessionHost& host, std::size_t replays_max,
+               std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
     /// Handles deliveries from the outbox in order.
@@ -36,6 +38,8 @@ class Dispatcher {
     }
 
     Commands& commands() { return commands_; }
+    const ReplayPlaces& replay_places() const { return replay_places_; }
+    const BackgroundQueries& background_queries() const { return background_queries_; }
     /// Commands::handle_own().
     void handle_own(v1::Request request) { commands_.handle_own(std::move(request)); }
 
@@ -69,6 +73,10 @@ class Dispatcher {
     /// Sends a query to the simulation thread. The session's further requests are held back until it is answered.
     void ask(Session& session, v1::Request request);
     void find_run(Session& session, v1::Request request);
+    /// Handles a request of the kind REQUEST_KIND_REPLAY.
+    void serve_replay(Session& session, const v1::Request& request);
+    /// Closes a replay that has lost its place, and reports it to its session.
+    void end_replay(const ReplayPlaces::Place& place);
 
     runtime::Simulations& simulations_;
     const Sessions& sessions_;
@@ -79,6 +87,7 @@ class Dispatcher {
     BackgroundQueries background_queries_;
     Heartbeat heartbeat_;
     Commands commands_;
+    ReplayPlaces replay_places_;
     bool going_away_ = false;
 };
 

@@ -4,8 +4,7 @@
 
 #include <boost/asio/co_spawn.hpp>
 
-#include <cstddef>
-#include <map>
+#include <algorithm>
 #include <utility>
 
 namespace evod::network {
@@ -27,37 +26,44 @@ void Http::start() {
     asio::co_spawn(context_, listener_.accept([this](tcp::socket socket) { accepted(std::move(socket)); }), detached);
 }
 
-void Http::accepted(tcp::socket socket) {
-    bool full = connections_.size() >= http_connections_max;
-    if (full) {
-        service_.limit_counters.met(Limit::HttpConnections);
-        boost::system::error_code disconnected; // its address is then unspecified
-        full = !make_room(address_key(socket.remote_endpoint(disconnected).address()));
+base::Quota Http::places() const {
+    base::Quota held{http_connections_max};
+    for (const HttpConnectionPtr& connection : connections_) {
+        held.take(connection->address_prefix());
     }
+    return held;
+}
+
+void Http::accepted(tcp::socket socket) {
+    boost::system::error_code disconnected; // its address is then unspecified
+    const bool has_place = make_room(address_key(socket.remote_endpoint(disconnected).address()));
     if (closed_ || connections_.size() >= 2 * http_connections_max) {
         return;
     }
-    connections_.push_back(std::make_shared<HttpConnection>(std::move(socket), service_, full));
+    connections_.push_back(std::make_shared<HttpConnection>(std::move(socket), service_, !has_place));
     connections_.back()->start();
 }
 
 bool Http::make_room(const std::string& address_prefix) {
-    std::map<std::string, std::size_t> counts;
-    for (const HttpConnectionPtr& connection : connections_) {
-        ++counts[connection->address_prefix()];
+    const base::Quota held = places();
+    const auto verdict = held.ask(address_prefix);
+    if (verdict == base::Quota::Verdict::Free) {
+        return true;
     }
-    const std::size_t count_with_new = counts[address_prefix] + 1;
-    auto chosen = connections_.end();
-    std::pair<std::size_t, bool> most; // number of connections of the address; whether this one waits for a request
-    for (auto at = connections_.begin(); at != connections_.end(); ++at) {
-        const std::pair present{counts[(*at)->address_prefix()], (*at)->waits_for_request()};
-        if ((present.second || present.first > count_with_new) && present > most) {
-            chosen = at;
-            most = present;
-        }
+    service_.limit_counters.met(Limit::HttpConnections);
+    const std::string& from = verdict == base::Quota::Verdict::UserFull ? address_prefix : held.largest();
+    const auto is_of_it = [&](const HttpConnectionPtr& connection) { return connection->address_prefix() == from; };
+    auto chosen = std::ranges::find_if(connections_, [&](const HttpConnectionPtr& connection) {
+        return is_of_it(connection) && connection->waits_for_request();
+    });
+    if (chosen == connections_.end() && verdict == base::Quota::Verdict::FromLargest) {
+        chosen = std::ranges::find_if(connections_, is_of_it);
     }
     if (chosen == connections_.end()) {
         return false;
+    }
+    if (from != address_prefix) {
+        service_.limit_counters.took_back(Limit::HttpConnections);
     }
     const HttpConnectionPtr connection = *chosen;
     connections_.erase(chosen);

@@ -1,12 +1,12 @@
 // HTTP: one port that serves the page of the browser viewer, its sessions in WebSockets, and pages for monitoring.
 //
 // Owner        the server, on the network thread. http_connection.h serves each connection.
-// Full         limits.h limits the number of connections, the size of a request's header and the time for a request. If
-//              there are too many connections, one of the address with the most connections makes room, so that one
-//              address cannot keep the others out.
+// Full         limits.h limits the number of connections, the size of a request's header and the time for a request. An
+//              address may have half of the connections (base::Quota).
 // Source       RFC 9110 and RFC 9112.
 #pragma once
 
+#include "server/base/quota.h"
 #include "server/network/http_connection.h"
 #include "server/network/limits.h"
 #include "server/network/listener.h"
@@ -27,6 +27,9 @@ class Http {
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_.endpoint(); }
 
+    /// The connections that are open, by address.
+    base::Quota places() const;
+
     /// Accepts connections until close() is called.
     void start();
     void close();
@@ -38,9 +41,9 @@ class Http {
         : context_{context}, listener_{std::move(listener)}, service_{std::move(service)} {}
 
     void accepted(boost::asio::ip::tcp::socket socket);
-    /// Closes one connection to make room for a new one. Chooses the address with the most connections, there one that
-    /// waits for a request, and of these the oldest. Closes other connections only of an address that still has as many
-    /// connections as the new one's address afterwards. Returns false if there is no such connection.
+    /// Makes room for one more connection of this address. Closes one that waits for a request, the oldest: of this
+    /// address if it holds half, otherwise of the address with the most. Closes other connections only of an address that
+    /// has clearly more. Returns false if there is no room.
     bool make_room(const std::string& address_prefix);
 
     boost::asio::io_context& context_;

@@ -42,7 +42,8 @@ std::optional<HttpAnswer> fault_of(boost::system::error_code error,
         answer.fields.emplace_back(http::field::allow, "GET, HEAD");
         return answer;
     }
-    if (!parser.is_done()) {
+    // A proxy and this server could disagree about where the body ends, and the rest would be read as another request.
+    if (parser.get().count(http::field::transfer_encoding) > 0 || !parser.is_done()) {
         return refused(http::status::bad_request, "send the request without a body");
     }
     return std::nullopt;

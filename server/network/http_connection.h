@@ -84,7 +84,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
     /// Whether no request is being answered.
     bool waits_for_request() const { return waits_for_request_; }
-    /// The IPv4 address, or the /64 prefix of the IPv6 address.
+    /// The IPv4 address, or the /48 prefix of the IPv6 address.
     const std::string& address_prefix() const { return address_prefix_; }
 
   private:

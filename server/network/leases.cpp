@@ -6,16 +6,16 @@
 
 namespace evod::network {
 
-void Leases::begin(const std::string& world, std::uint64_t number, const std::string& client_key) {
+void Leases::begin(const std::string& world, std::uint64_t number, const std::optional<UserKey>& holder) {
     const auto lease = leases_.try_emplace(world, Lease{0, {}, boost::asio::steady_timer{context_}}).first;
     lease->second.number = number;
-    lease->second.client_key = client_key;
+    lease->second.holder = holder;
     await_end(world, lease->second);
 }
 
-bool Leases::renew(const std::string& world, const std::string& client_key) {
+bool Leases::renew(const std::string& world, const UserKey& key) {
     const auto lease = leases_.find(world);
-    if (lease == leases_.end() || lease->second.client_key != client_key) {
+    if (lease == leases_.end() || lease->second.holder != key) {
         return false;
     }
     await_end(world, lease->second);
@@ -30,7 +30,7 @@ void Leases::await_end(const std::string& world, Lease& lease) {
             ended->second.timer.expiry() > boost::asio::steady_timer::clock_type::now()) {
             return; // end() or renew() was called just before the timer expired
         }
-        ended->second.client_key.clear();
+        ended->second.holder.reset();
         await_end(world, ended->second);
         expired_(world, ended->second.number);
     });

@@ -4,11 +4,14 @@
 // Owner        the dispatcher, on the network thread. The simulation decides whether a world has a lease.
 #pragma once
 
+#include "server/network/user_key.h"
+
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace evod::network {
@@ -22,17 +25,18 @@ class Leases {
 
     /// Starts a lease. If the world already has a lease, the new one replaces it.
     ///
-    /// lease  number of the lease within its world (simulation::RunControl).
-    void begin(const std::string& world, std::uint64_t lease, const std::string& client_key);
-    /// Extends the lease. Returns false if this client_key does not hold the lease of the world.
-    bool renew(const std::string& world, const std::string& client_key);
+    /// lease   number of the lease within its world (simulation::RunControl).
+    /// holder  nullopt: a client of the server before this one, so the lease cannot be renewed.
+    void begin(const std::string& world, std::uint64_t lease, const std::optional<UserKey>& holder);
+    /// Extends the lease. Returns false if this key does not hold the lease of the world.
+    bool renew(const std::string& world, const UserKey& key);
     void end(const std::string& world) { leases_.erase(world); }
     void end_all() { leases_.clear(); }
 
   private:
     struct Lease {
         std::uint64_t number;
-        std::string client_key;
+        std::optional<UserKey> holder;
         boost::asio::steady_timer timer;
     };
     void await_end(const std::string& world, Lease& lease);

@@ -9,7 +9,6 @@
 #include "server/runtime/export_job.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
-#include "server/runtime/replay_loop.h"
 #include "server/simulation/world.h"
 #include "server/simulation/world_name.h"
 
@@ -21,6 +20,8 @@ namespace {
 constexpr std::uint64_t seconds(std::chrono::milliseconds duration) {
     return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(duration).count());
 }
+
+constexpr bool shared = true;
 
 constexpr LimitRow table[] = {
     {Limit::HelloFrameBytes, "hello_frame_bytes_max", *codec::hello_limits.control_bytes_max,
@@ -39,12 +40,17 @@ constexpr LimitRow table[] = {
      "seconds from the first to the last byte of a frame", "the server sends a Goodbye and closes the session"},
     {Limit::StalledTimeout, "stalled_timeout_s", seconds(stalled_timeout),
      "seconds in which a client receives none of the data that waits for it", "the server closes the session"},
-    {Limit::Sessions, "sessions_max", SessionBounds{}.sessions_max, "sessions; option `--sessions-max`",
-     "the server sends a Goodbye to the oldest session without a Hello and closes it; if there is none, it does so "
-     "with the new session. While 64 Goodbyes are being sent, it closes sessions without one"},
-    {Limit::SessionsPerAddress, "sessions_per_address_max", SessionBounds{}.sessions_per_address_max,
-     "sessions from one IPv4 address or one IPv6 /64 prefix; option `--sessions-per-address-max`",
-     "as for `sessions_max`, but only among the sessions from that address"},
+    {Limit::AnswersTimeout, "answers_timeout_s", seconds(answers_timeout),
+     "seconds in which a client that has closed its sending side receives pending answers",
+     "the server closes the session"},
+    {Limit::Sessions, "sessions_max", LimitOptions{}.sessions_max, "sessions; option `--sessions-max`",
+     "the server sends the new session a Goodbye and closes it; if only other users hold more, the one with the most "
+     "loses its oldest session without a command under way",
+     shared},
+    {Limit::Newcomers, "newcomers_max", newcomers_max, "connections whose Hello has not arrived",
+     "the server sends a Goodbye to the oldest of them, of the same address if it holds half, otherwise of the address "
+     "with the most",
+     shared},
     {Limit::RequestsPerSecond, "requests_per_s_max", requests_per_s_max,
      "average number of frames per second from a session, including invalid ones; each further 64 bytes of a frame, "
      "each 1,024 bytes of its answer, and each island whose snapshot it asks for count as one more frame",
@@ -55,7 +61,7 @@ constexpr LimitRow table[] = {
      "the server refuses the request with `RESOURCE_EXHAUSTED`; wait for an answer"},
     {Limit::MailboxCommands, "mailbox_commands_max", runtime::mailbox_commands_max,
      "requests of all sessions that wait for the simulation",
-     "the server refuses the request with `RESOURCE_EXHAUSTED`; try again"},
+     "the server refuses the request with `RESOURCE_EXHAUSTED`; try again", shared},
     {Limit::Subscriptions, "subscriptions_max", subscriptions_max, "subscriptions of a session",
      "the server refuses the request with `RESOURCE_EXHAUSTED`"},
     {Limit::WatchedIslands, "watched_islands_max", watched_islands_max,
@@ -65,7 +71,7 @@ constexpr LimitRow table[] = {
      "snapshots per second of a subscription",
      "the server lowers the rate to this limit; its answer contains the new rate"},
     {Limit::Tiles, "tiles_max", codec::tiles_max, "tiles of an island", "the server uses larger tiles"},
-    {Limit::Worlds, "worlds_max", simulation::worlds_max, "worlds, without replays of other worlds",
+    {Limit::Worlds, "worlds_max", LimitOptions{}.worlds_max, "worlds, without replays; option `--worlds-max`",
      "the server refuses the request with `RESOURCE_EXHAUSTED`"},
     {Limit::PlannedChanges, "planned_changes_max", parameters::planned_changes_max,
      "planned changes of a world that are not due yet", "the server refuses the request with `RESOURCE_EXHAUSTED`"},
@@ -74,9 +80,10 @@ constexpr LimitRow table[] = {
     {Limit::Placed, "placed_max", simulation::placed_max,
      "food items, poison items and organisms, counted separately, that are placed on an island in one generation",
      "the server refuses the request with `RESOURCE_EXHAUSTED`"},
-    {Limit::Replays, "replays_max", runtime::ReplayLoop::replays_max,
-     "replays of a session; all sessions together may have 64",
-     "the server refuses the request with `RESOURCE_EXHAUSTED`"},
+    {Limit::Replays, "replays_max", LimitOptions{}.replays_max, "replays of all sessions; option `--replays-max`",
+     "the server refuses the request with `RESOURCE_EXHAUSTED`; if only other users hold more, it closes the oldest "
+     "replay of the one with the most and reports it with `world_deleted`",
+     shared},
     {Limit::Lease, "lease_s", seconds(lease_time),
      "seconds that a lease lasts after the last RunUntilTick or RenewLease", "the lease ends, and the world continues"},
     {Limit::Exports, "exports_max", exports_max, "running exports of all sessions",
@@ -91,10 +98,10 @@ constexpr LimitRow table[] = {
      "the server evicts the oldest answer; if the client repeats that command, the server refuses it with "
      "`FAILED_PRECONDITION`"},
     {Limit::ClientKeys, "client_keys_max", client_keys_max,
-     "keys with cached answers; all cached answers together have at most 64 MiB",
-     "the server evicts keys with a single command first, then the least recently used keys. It remembers the highest "
-     "`request_id` of the last 100,000 evicted keys, and refuses their commands up to that id with "
-     "`FAILED_PRECONDITION`"},
+     "keys with cached answers; all cached answers together have at most 64 MiB. A user has at most half of both",
+     "the server evicts keys of the user who has the most: keys with a single command first, then the least recently "
+     "used keys. It remembers the highest `request_id` of the last 100,000 evicted keys, and refuses their commands up "
+     "to that id with `FAILED_PRECONDITION`"},
     {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::history_generations_kept,
      "generations per world whose statistics the server keeps; with more than 13 islands, as many as fit into 131,072 "
      "rows",
@@ -110,7 +117,8 @@ constexpr LimitRow table[] = {
      "bytes of memory for all sessions: data to send, requests and exports, subscriptions and snapshots, "
      "replays, incomplete frames",
      "the server closes the largest sessions of the user that uses the most memory; it "
-     "does so, too, if a user uses more than half"},
+     "does so, too, if a user uses more than half",
+     true},
     {Limit::QueuedResponseBytes, "queued_response_bytes_max", queued_response_bytes_max,
      "bytes of answers that a session has not read", "the server closes the session"},
     {Limit::QueuedEventBytes, "queued_event_bytes_max", queued_event_bytes_max,
@@ -118,12 +126,16 @@ constexpr LimitRow table[] = {
      "the server drops further events and reports their number in `EventsDropped`"},
     {Limit::OutboxEvents, "waiting_events_max", runtime::outbox_events_max,
      "events of all worlds that wait between simulation and network",
-     "the server drops further events and reports their number to all subscribers in `EventsDropped`"},
+     "the server drops further events and reports their number in `EventsDropped`. At most half may be of replays, and "
+     "half of these of one user's replays; their drops are reported to this user only"},
     {Limit::HttpConnections, "http_connections_max", http_connections_max,
      "open HTTP connections; a WebSocket counts as a session instead",
-     "the server closes a connection of the address with the most connections, if possible one that waits for a "
-     "request. If none waits and the new connection is from that address, the server answers it with `503`; from twice "
-     "as many connections it closes new ones at once"},
+     "the server closes the oldest connection that waits for a request, of the same address if it holds half, "
+     "otherwise "
+     "of the address with the most. If none waits, it closes the oldest connection of an address that has clearly "
+     "more, "
+     "or answers the new one with `503`; from twice as many connections it closes new ones at once",
+     shared},
     {Limit::HttpHeaderBytes, "http_header_bytes_max", http_header_bytes_max, "bytes in the header of an HTTP request",
      "the server answers with `431` and closes the connection"},
     {Limit::HttpRequestTimeout, "http_request_timeout_s", seconds(http_request_timeout),
@@ -138,15 +150,17 @@ std::span<const LimitRow> limit_table() {
 }
 
 std::string limit_list() {
-    std::string text = "| name | default | what is limited | when the limit is reached |\n|---|---|---|---|\n";
+    std::string text =
+        "| name | default | of one user | what is limited | when the limit is reached |\n|---|---|---|---|---|\n";
     for (const LimitRow& row : table) {
-        text += "| `" + std::string{row.name} + "` | " + std::to_string(row.value) + " | " + std::string{row.limited} +
-                " | " + std::string{row.effect} + " |\n";
+        text += "| `" + std::string{row.name} + "` | " + std::to_string(row.value) + " | " +
+                (row.is_shared ? std::to_string((row.value + 1) / 2) : "") + " | " + std::string{row.limited} + " | " +
+                std::string{row.effect} + " |\n";
     }
     return text;
 }
 
-v1::Limits limits_message(const SessionBounds& bounds) {
+v1::Limits limits_message(const LimitOptions& options) {
     v1::Limits limits;
     for (const LimitRow& row : table) {
         const auto* field = v1::Limits::descriptor()->FindFieldByName(std::string{row.name});
@@ -160,8 +174,9 @@ v1::Limits limits_message(const SessionBounds& bounds) {
             in.SetUInt32(&limits, field, static_cast<std::uint32_t>(row.value));
         }
     }
-    limits.set_sessions_max(bounds.sessions_max);
-    limits.set_sessions_per_address_max(bounds.sessions_per_address_max);
+    limits.set_sessions_max(options.sessions_max);
+    limits.set_worlds_max(options.worlds_max);
+    limits.set_replays_max(options.replays_max);
     return limits;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "evod/v1/commands.pb.h"
+#include "server/simulation/laboratory.h"
 
 #include <array>
 #include <atomic>
@@ -30,6 +31,7 @@ constexpr std::uint32_t exports_max = 8;
 constexpr std::chrono::seconds hello_timeout{5};
 constexpr std::chrono::seconds frame_timeout{10};
 constexpr std::chrono::seconds stalled_timeout{10};
+constexpr std::chrono::seconds answers_timeout{3};
 constexpr std::chrono::seconds lease_time{5};
 constexpr std::uint32_t requests_per_s_max = 50'000; // a client that waits for each answer never reaches this rate
 constexpr std::uint32_t request_burst_max = 5'000;
@@ -41,14 +43,17 @@ constexpr std::uint32_t frame_bytes_max_below_admin = 64 << 10;
 constexpr std::size_t client_buffer_bytes_max = 256 << 20;
 constexpr std::size_t queued_event_bytes_max = 1 << 20;
 constexpr std::size_t queued_response_bytes_max = 16 << 20;
-constexpr std::size_t http_connections_max = 64; // a class loads the page at once
+constexpr std::size_t http_connections_max = 128; // a class behind one address, which gets half, loads the page at once
 constexpr std::size_t http_header_bytes_max = 8 << 10;
 constexpr std::chrono::seconds http_request_timeout{5};
 
+constexpr std::uint32_t newcomers_max = 256;
+
 /// Limits that the options of the server can change.
-struct SessionBounds {
+struct LimitOptions {
     std::uint32_t sessions_max = 256;
-    std::uint32_t sessions_per_address_max = 128; // so that one address cannot use all sessions
+    std::uint32_t worlds_max = simulation::worlds_max_by_default;
+    std::uint32_t replays_max = 64;
 };
 
 enum class Limit : std::uint8_t {
@@ -58,8 +63,9 @@ enum class Limit : std::uint8_t {
     HelloTimeout,
     FrameTimeout,
     StalledTimeout,
+    AnswersTimeout,
     Sessions,
-    SessionsPerAddress,
+    Newcomers,
     RequestsPerSecond,
     RequestBurst,
     RequestsInFlight,
@@ -99,6 +105,7 @@ struct LimitRow {
     std::uint64_t value;      // default value
     std::string_view limited; // the limited quantity, in words
     std::string_view effect;  // what the server does when the limit is reached
+    bool is_shared = false;   // all clients share it, and a user may hold at most half of it (base::Quota)
 };
 
 /// One row per Limit, in the order of the enum.
@@ -108,27 +115,36 @@ std::span<const LimitRow> limit_table();
 std::string limit_list();
 
 /// The limits as the message that the server sends to clients.
-v1::Limits limits_message(const SessionBounds& bounds);
+v1::Limits limits_message(const LimitOptions& options);
 
-/// Counts how often each limit was reached since the server started.
+/// Counts how often each limit was reached since the server started, and how often the holder of the most lost something
+/// because another user wanted it.
 class LimitCounters {
   public:
     static constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::HttpRequestTimeout) + 1;
 
-    void met(Limit limit, std::uint64_t times = 1) { of(limit).fetch_add(times, std::memory_order_relaxed); }
-    std::uint64_t count(Limit limit) const {
-        return counters_[static_cast<std::size_t>(limit)].load(std::memory_order_relaxed);
+    void met(Limit limit, std::uint64_t times = 1) { add(met_, limit, times); }
+    void took_back(Limit limit) { add(taken_back_, limit, 1); }
+    std::uint64_t count(Limit limit) const { return met_[index(limit)].load(std::memory_order_relaxed); }
+    std::uint64_t taken_back_count(Limit limit) const {
+        return taken_back_[index(limit)].load(std::memory_order_relaxed);
     }
 
   private:
-    std::atomic<std::uint64_t>& of(Limit limit) { return counters_[static_cast<std::size_t>(limit)]; }
-    std::array<std::atomic<std::uint64_t>, limit_count> counters_{};
+    using Counters = std::array<std::atomic<std::uint64_t>, limit_count>;
+    static std::size_t index(Limit limit) { return static_cast<std::size_t>(limit); }
+    static void add(Counters& counters, Limit limit, std::uint64_t times) {
+        counters[index(limit)].fetch_add(times, std::memory_order_relaxed);
+    }
+
+    Counters met_{}, taken_back_{};
 };
 
 // ---- constants that tune connections but do not limit clients --------------------------------------------------
 
-// Rate limit of log lines about sessions that ended without a Hello.
-constexpr double ungreeted_lines_per_s = 1, ungreeted_lines_burst = 20;
+// Rate limit of log lines about the sessions of a user, and of those about all sessions that ended without a Hello.
+constexpr double session_lines_per_s = 1, session_lines_burst = 20;
+constexpr std::size_t log_users_max = 256;
 
 // Maximum of unsent bytes in the kernel. It is small so that a slow viewer receives new snapshots instead of old ones.
 constexpr int unsent_bytes_max = 128 << 10;
@@ -146,7 +162,7 @@ constexpr double empty_frames_per_s_max = 100, empty_frames_burst_max = 1000;
 // close connections on which nothing is sent.
 constexpr std::chrono::seconds websocket_ping_after{10}, websocket_silence_max{30};
 
-// Maximum size of all cached answers together. Beyond it the least recently used keys are evicted first.
+// Maximum size of all cached answers together.
 constexpr std::size_t retry_bytes_max = 64 << 20;
 // Number of evicted keys for which the cache remembers the highest request_id.
 constexpr std::size_t evicted_keys_max = 100'000;
@@ -162,8 +178,7 @@ constexpr std::chrono::seconds farewell_timeout{1}; // time to send the last byt
 constexpr std::chrono::milliseconds accept_pause{100};
 // File descriptors reserved for run files. If the system allows only few, an eighth of them is reserved instead.
 constexpr std::uint64_t descriptors_kept = 32;
-// Number of refused connections that may receive a Goodbye at the same time. Further connections are closed without a
-// Goodbye.
+// Number of connections that may receive a Goodbye at the same time.
 constexpr std::size_t farewells_max = 64;
 
 // Constants for HTTP.

@@ -21,12 +21,12 @@ void RequestsInFlight::expect(std::ptrdiff_t bytes) {
 }
 
 void RequestsInFlight::begin_command(std::size_t bytes) {
-    ++commands_under_way_;
+    ++commands_under_way;
     expect(static_cast<std::ptrdiff_t>(bytes));
 }
 
 void RequestsInFlight::end_command(std::size_t bytes) {
-    --commands_under_way_;
+    --commands_under_way;
     expect(-static_cast<std::ptrdiff_t>(bytes));
 }
 

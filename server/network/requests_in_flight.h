@@ -31,14 +31,14 @@ class RequestsInFlight {
     /// Reserves memory of requests under way and of answers in preparation. A negative number releases it.
     void expect(std::ptrdiff_t bytes);
 
-    /// A command is under way. Its client would not learn whether it is applied if the session were closed.
+    /// To be called when the simulation is to carry out a command, and when its answer exists.
     ///
     /// bytes  memory of the command
     void begin_command(std::size_t bytes);
     void end_command(std::size_t bytes);
-    bool has_command_under_way() const { return commands_under_way_ > 0; }
 
     bool query_under_way = false;
+    std::size_t commands_under_way = 0; // commands whose answer does not exist yet
     void hold_back(v1::Request request);
     /// Removes and returns the oldest request that was held back; nullopt if there is none.
     std::optional<v1::Request> take_held_back();
@@ -56,7 +56,6 @@ class RequestsInFlight {
     std::deque<HeldBack> held_back_; // at most requests_in_flight_max entries
     SendMemory::Reservation expected_bytes_, held_back_bytes_;
     bool closed_ = false;
-    std::size_t commands_under_way_ = 0;
 };
 
 } // namespace evod::network

@@ -86,7 +86,7 @@ Server::Server(ServerOptions options)
     , executor_{runtime::make_executor(options_.threads)}
     , simulations_{std::holds_alternative<ReplayedRun>(options_.worlds)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
-    , table_{host_, options_.session_bounds}
+    , table_{host_, options_.limits.sessions_max}
     , streams_{table_.sessions(), simulations_, send_memory_}
     , dispatcher_{context_,
                   simulations_,
@@ -94,11 +94,13 @@ Server::Server(ServerOptions options)
                   table_.sessions(),
                   streams_,
                   host_,
+                  options_.limits.replays_max,
                   [this] { stop(); },
                   [this] { return metrics(); }} {
-    host_.limits = limits_message(options_.session_bounds);
+    host_.limits = limits_message(options_.limits);
     host_.instance_id = to_text(runtime::draw_run_id());
     host_.clock = &clock_;
+    host_.make_room = [this](const std::string& account) { return table_.make_room(account); };
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
     host_.admit = [this](const std::string& token, const std::string& address) {
         return gate_->admit(token, address, access::Gate::Clock::now());
@@ -157,8 +159,9 @@ bool Server::run() {
     simulation::Laboratory worlds;
     if (archive_) {
         static_assert(replay::Archive::answers_kept_of_ended == retries_kept &&
-                      replay::Archive::answers_of_ended_bytes_max == retry_bytes_max);
-        dispatcher_.commands().restore(archive_->take_answers());
+                      replay::Archive::answers_of_ended_bytes_max == retry_bytes_max &&
+                      replay::Archive::keys_kept_of_ended == evicted_keys_max);
+        dispatcher_.commands().restore(archive_->take_used_keys(), archive_->take_answers());
         worlds = archive_->take_laboratory();
         for (const auto& entry : worlds.entries()) {
             if (entry->control.leased) {
@@ -169,6 +172,7 @@ bool Server::run() {
     if (const auto* live = std::get_if<LiveWorlds>(&options_.worlds); live != nullptr && live->processes) {
         worlds.share(live->processes->islands_maker, *executor_);
     }
+    worlds.set_worlds_max(options_.limits.worlds_max);
     if (first_world_) {
         first_world_->begin([this](v1::Request request) { dispatcher_.commands().handle_own(std::move(request)); });
     }
@@ -252,8 +256,8 @@ void Server::stop() {
 
 void Server::deliver() {
     runtime::Outbox::Taken taken = outbox_.take();
-    if (taken.dropped_events > 0) {
-        limit_counters_.met(Limit::OutboxEvents, taken.dropped_events);
+    for (const auto& [user, count] : taken.dropped_events) {
+        limit_counters_.met(Limit::OutboxEvents, count);
     }
     dispatcher_.deliver(std::move(taken.deliveries));
     streams_.deliver(std::move(taken));

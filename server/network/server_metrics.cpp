@@ -54,10 +54,10 @@ void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
     }
 }
 
-void add_queues(v1::Metrics& to, const runtime::Mailbox::FillLevel& mailbox, const runtime::Outbox::FillLevel& outbox) {
-    add_gauge(to, "evod_mailbox_requests", "Requests waiting for the simulation").add(number(mailbox.waiting));
+void add_queues(v1::Metrics& to, const base::Quota& mailbox, const runtime::Outbox::FillLevel& outbox) {
+    add_gauge(to, "evod_mailbox_requests", "Requests waiting for the simulation").add(number(mailbox.held()));
     add_gauge(to, "evod_mailbox_requests_max", "Capacity of the mailbox; further requests are refused")
-        .add(number(mailbox.capacity));
+        .add(number(mailbox.total()));
     add_gauge(to, "evod_outbox_deliveries", "Answers and events that wait between simulation and network")
         .add(number(outbox.deliveries));
     add_gauge(to, "evod_outbox_events", "Events among the deliveries").add(number(outbox.events));
@@ -113,6 +113,27 @@ void add_limits(v1::Metrics& to, const LimitCounters& counters) {
     for (const LimitRow& row : limit_table()) {
         reached.add(number(counters.count(row.limit)), {{"limit", std::string{row.name}}});
     }
+    auto taken_back = add_counter(to, "evod_limit_taken_back_total",
+                                  "How often the user with the most lost its oldest, because another user wanted it");
+    for (const LimitRow& row : limit_table()) {
+        if (row.is_shared) {
+            taken_back.add(number(counters.taken_back_count(row.limit)), {{"limit", std::string{row.name}}});
+        }
+    }
+}
+
+void add_pools(v1::Metrics& to, const std::vector<std::pair<Limit, base::Quota>>& pools) {
+    const auto name_of = [](Limit limit) {
+        return std::string{std::ranges::find(limit_table(), limit, &LimitRow::limit)->name};
+    };
+    auto totals = add_gauge(to, "evod_pool_total", "Size of each pool that all clients share; a user may hold half");
+    auto held = add_gauge(to, "evod_pool_held", "What all clients together hold of it");
+    auto most = add_gauge(to, "evod_pool_held_by_one", "What the user with the most holds of it");
+    for (const auto& [limit, quota] : pools) {
+        totals.add(number(quota.total()), {{"limit", name_of(limit)}});
+        held.add(number(quota.held()), {{"limit", name_of(limit)}});
+        most.add(number(quota.held(quota.largest())), {{"limit", name_of(limit)}});
+    }
 }
 
 void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::Storage& storage) {
@@ -163,8 +184,8 @@ v1::Metrics Server::metrics() {
     add_counter(all, "evod_exchange_seconds_total",
                 "Time for which the simulation has waited for the other processes and for what they send")
         .add(processes != nullptr ? processes->exchange_s() : 0);
-    add_queues(all, simulations_.fill(), outbox_.fill());
-    add_sessions(all, table_.sessions(), options_.session_bounds.sessions_max);
+    add_queues(all, simulations_.mailbox_places(), outbox_.fill());
+    add_sessions(all, table_.sessions(), options_.limits.sessions_max);
     add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
         .add(number(gate_->failed_login_count()));
     add_gauge(all, "evod_client_buffer_bytes",
@@ -177,6 +198,14 @@ v1::Metrics Server::metrics() {
         .add(number(client_buffer_bytes_max));
     add_traffic(all, host_.traffic);
     add_limits(all, limit_counters_);
+    std::vector<std::pair<Limit, base::Quota>> pools{{Limit::Sessions, table_.places()},
+                                                     {Limit::Newcomers, table_.newcomers()},
+                                                     {Limit::MailboxCommands, simulations_.mailbox_places()},
+                                                     {Limit::Replays, dispatcher_.replay_places().quota()}};
+    if (http_) {
+        pools.emplace_back(Limit::HttpConnections, http_->places());
+    }
+    add_pools(all, pools);
     if (archive_ && archive_->thread() != nullptr && host_.storage) {
         add_storage(all, *archive_->thread(), *host_.storage);
     }

@@ -91,7 +91,7 @@ struct ReplayedRun {
 struct ServerOptions {
     std::variant<LiveWorlds, ReplayedRun> worlds;
     ListenerOptions listeners;
-    SessionBounds session_bounds;
+    LimitOptions limits;
     std::size_t threads = 1; // number of threads in the worker pool
 };
 

@@ -37,6 +37,7 @@ Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::u
     , number_{number}
     , peer_{transport_->peer()}
     , address_prefix_{address_key(peer_.address())}
+    , account_{address_prefix_}
     , deadline_timer_{transport_->socket().get_executor()}
     , reader_bytes_{host.send_memory}
     , subscription_bytes_{host.send_memory}
@@ -116,6 +117,14 @@ void Session::on_missed(Deadline deadline) {
                             "a frame did not arrive completely within " + std::to_string(frame_timeout.count()) +
                                 " s: connect again and send each frame without pauses",
                             base::Reason::FrameLate));
+    case Deadline::Answers:
+        host_.limit_counters.met(Limit::AnswersTimeout);
+        if (turn_.is_awaited()) {
+            return turn_.notify(); // fail_when_answered() continues
+        }
+        log_closed({}, "the client has closed its sending side, and its requests were not answered within " +
+                           std::to_string(answers_timeout.count()) + " s");
+        return close();
     case Deadline::Farewell:
         return close();
     }
@@ -142,8 +151,8 @@ v1::Limits Session::limits() const {
     return limits;
 }
 
-std::string Session::by() const {
-    return (!visitor_ || visitor_->name.empty() ? "" : visitor_->name + ": ") + client_ + " " + to_text(peer_);
+base::Actor Session::actor() const {
+    return base::client_actor(visitor_ ? visitor_->name : "", client_, to_text(peer_));
 }
 
 // ---- reading ---------------------------------------------------------------------------------------------------
@@ -175,12 +184,13 @@ asio::awaitable<void> Session::read() {
         const bool more_to_say = requests.unanswered() > 0 || queue_.has_waiting_frames() || queue_.is_sending();
         if (error == asio::error::eof && phase_ != Phase::Ended &&
             (phase_ == Phase::Finishing || more_to_say || transport_->is_websocket())) {
-            // The client closed its sending side but may still read. It therefore receives the pending answers, and in a
-            // WebSocket a Close frame.
+            // The client closed its sending side but may still read. It therefore receives the answers that come soon, and
+            // in a WebSocket a Close frame.
             if (phase_ == Phase::Finishing) {
                 close_code_ = close_code_.value_or(WebSocketClose::Normal);
             } else {
                 phase_ = Phase::InputOver;
+                begin(Deadline::Answers, answers_timeout);
             }
             writer_.notify();
             end_coroutine();
@@ -264,7 +274,7 @@ asio::awaitable<void> Session::wait_for_turn(double cost) {
 asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
     if (requests.unanswered() > 0) {
         phase_ = Phase::InputOver;
-        end(Deadline::Frame);
+        begin(Deadline::Answers, answers_timeout);
         writer_.notify();
         co_await turn_.wait();
     }
@@ -334,6 +344,11 @@ void Session::on_hello(const v1::Hello& hello) {
     if (!visitor) {
         return fail(visitor.error());
     }
+    const std::string& account = visitor->name.empty() ? address_prefix_ : visitor->name;
+    if (const auto refused = host_.make_room(account)) {
+        return fail(*refused);
+    }
+    account_ = account;
     visitor_ = *std::move(visitor);
     if (hello.frame_bytes_max() != 0) {
         queue_.set_frame_bytes_max(hello.frame_bytes_max());
@@ -371,33 +386,32 @@ void Session::on_hello(const v1::Hello& hello) {
 void Session::log_connection(const std::string& what) const {
     // Every call of evoctl opens a session, usually on the server's own machine. Such sessions are logged only at
     // Debug.
-    const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
-    if (log::wanted(level)) {
-        log::write(level, {.session = number_, .client = by()},
-                   "session " + std::to_string(number_) + ": " + by() + " " + what);
+    log_line(peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info, {}, what);
+}
+
+void Session::log_line(log::Level level, std::string_view code, const std::string& what) const {
+    if (!log::wanted(level)) {
+        return;
     }
+    std::uint64_t left_out = 0;
+    if (level >= log::Level::Info) { // clients must not fill the disk with log lines
+        const std::string user = !greeted() ? "" : visitor_->name.empty() ? address_prefix_ : visitor_->name;
+        const auto before = host_.log_limit.take(user, host_.clock->now());
+        if (!before) {
+            return;
+        }
+        left_out = *before;
+    }
+    const std::string who = greeted() ? by() : to_text(peer_);
+    log::write(level, {.session = number_, .client = who, .code = std::string{code}},
+               "session " + std::to_string(number_) + ": " + who + " " + what +
+                   (left_out == 0 ? ""
+                                  : "; " + std::to_string(left_out) + " earlier " +
+                                        (greeted() ? "lines about this user" : "connections") + " were not logged"));
 }
 
 void Session::log_closed(std::string_view code, const std::string& why) {
-    const std::string who = greeted() ? by() : to_text(peer_);
-    std::string left_out;
-    if (!greeted()) { // connections without a Hello must not fill the disk with log lines
-        SessionHost::UngreetedLog& ungreeted = host_.ungreeted_log;
-        const auto now = host_.clock->now();
-        if (!ungreeted.lines) {
-            ungreeted.lines.emplace(ungreeted_lines_per_s, ungreeted_lines_burst, now);
-        }
-        if (!ungreeted.lines->take(1, now)) {
-            ++ungreeted.left_out;
-            return;
-        }
-        if (ungreeted.left_out > 0) {
-            left_out =
-                "; " + std::to_string(std::exchange(ungreeted.left_out, 0)) + " earlier connections were not logged";
-        }
-    }
-    log::info({.session = number_, .client = who, .code = std::string{code}}, "session {}: {} closed: {}{}", number_,
-              who, why, left_out);
+    log_line(log::Level::Info, code, "closed: " + why);
 }
 
 void Session::fail(const base::Refusal& refused) {
@@ -419,9 +433,8 @@ void Session::check_progress(runtime::Clock::duration watched) {
     const bool sends = queue_.is_sending() && phase_ != Phase::Ended;
     if (watch_.is_stalled(sends ? std::optional{transport_->progress()} : std::nullopt, watched)) {
         host_.limit_counters.met(Limit::StalledTimeout);
-        log::warn({.session = number_, .client = by()},
-                  "session {}: {} closed: the client has received nothing for {} s", number_, by(),
-                  stalled_timeout.count());
+        log_line(log::Level::Warn, {},
+                 "closed: the client has received nothing for " + std::to_string(stalled_timeout.count()) + " s");
         close();
     }
     if (transport_->is_websocket()) {
@@ -455,8 +468,8 @@ std::size_t Session::held_bytes() const {
 
 void Session::evict(std::string_view why, std::size_t bytes) {
     host_.limit_counters.met(Limit::ClientBufferBytes);
-    log::warn({.session = number_, .client = by()}, "session {}: {} closed: {} of memory, and this one uses {} KiB",
-              number_, by(), why, bytes >> 10);
+    log_line(log::Level::Warn, {},
+             "closed: " + std::string{why} + " of memory, and this one uses " + std::to_string(bytes >> 10) + " KiB");
     close();
 }
 

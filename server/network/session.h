@@ -20,6 +20,7 @@
 #include "server/metrics/traffic.h"
 #include "server/network/client_watch.h"
 #include "server/network/limits.h"
+#include "server/network/log_limit.h"
 #include "server/network/messages.h"
 #include "server/network/page_address.h"
 #include "server/network/requests_in_flight.h"
@@ -40,6 +41,10 @@
 #include <set>
 #include <string>
 #include <string_view>
+
+namespace evod::log {
+enum class Level;
+}
 
 namespace evod::network {
 
@@ -62,14 +67,14 @@ struct SessionHost {
     asio::ssl::context* tls = nullptr;       // nullptr: no TLS
     metrics::Traffic traffic = {};
     runtime::Clock* clock = nullptr;
-    /// Limits the rate of log lines about sessions that ended without a Hello.
-    struct UngreetedLog {
-        std::optional<TokenBucket> lines = {}; // created when the first line is logged
-        std::uint64_t left_out = 0;            // number of lines omitted since the last logged line
-    } ungreeted_log = {};
+    LogLimit log_limit = {};
     std::string frame = {}; // reused buffer in which frames of snapshots are assembled
     /// Authenticates a client by its token and address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
+    /// Makes room for one more session of this account. Returns nullopt, or why there is none.
+    std::function<std::optional<base::Refusal>(const std::string& account)> make_room = [](const std::string&) {
+        return std::nullopt;
+    };
     std::function<void(Session&, v1::Request)> handle = {};
     std::function<void(Session&)> ended = {}; // called once, when the session has ended
     /// Returns, by session, its part of the memory of the snapshots that sessions share.
@@ -92,15 +97,20 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     std::uint64_t number() const { return number_; }
     bool greeted() const { return visitor_.has_value(); }
-    /// User, client name and address: "anna: evoview 127.0.0.1:51234".
-    std::string by() const;
+    /// The client of this session.
+    base::Actor actor() const;
+    /// The client of this session for log lines: "anna: evoview 127.0.0.1:51234".
+    std::string by() const { return to_text(actor()); }
     /// The limits that apply to the role of this session.
     v1::Limits limits() const;
     /// The user of the session, which must have received its Hello.
     const access::Visitor& visitor() const { return *visitor_; }
-    /// The IPv4 address, or the /64 prefix of the IPv6 address. The limits per address count the sessions with an equal
-    /// prefix.
+    /// The IPv4 address, or the prefix of the IPv6 address that identifies one site.
     const std::string& address_prefix() const { return address_prefix_; }
+    /// Whose quota the session uses: the name of its token or, without a token, its address prefix.
+    const std::string& account() const { return account_; }
+    /// Whether the session is closed, or will be once its queued data is sent.
+    bool is_over() const { return phase_ >= Phase::Finishing; }
 
     /// Sends the answer to an admitted request.
     void answer(SharedBytes frame);
@@ -147,12 +157,12 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     enum class Phase {
         Connecting, // the transport is not ready for writing
         Open,
-        InputOver, // nothing more is read, but pending answers are still sent
+        InputOver, // nothing more is read, but pending answers are still sent until answers_timeout
         Finishing, // only the queued data is still sent
         Ended,     // the connection is closed
     };
     /// What the client must do in time. The waits exclude each other: hello_timeout is shorter than frame_timeout.
-    enum class Deadline { None, Hello, Frame, Farewell };
+    enum class Deadline { None, Hello, Frame, Answers, Farewell };
     using Kind = SendQueue::Kind;
 
     asio::awaitable<void> read();
@@ -186,15 +196,16 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void log_connection(const std::string& what) const;
     /// code  name of the refusal's code; empty: the session was not refused.
     void log_closed(std::string_view code, const std::string& why);
+    /// Logs a line about this session, unless there are too many lines about its user.
+    void log_line(log::Level level, std::string_view code, const std::string& what) const;
     void end_coroutine();
-    bool is_over() const { return phase_ >= Phase::Finishing; }
 
     std::unique_ptr<Transport> transport_; // never nullptr
     SessionHost& host_;
     const std::uint64_t number_;
     const tcp::endpoint peer_;
     const std::string address_prefix_;
-    std::string client_;
+    std::string account_, client_;
     std::optional<access::Visitor> visitor_; // nullopt: no Hello was received
     Phase phase_ = Phase::Connecting;
     Deadline deadline_ = Deadline::None;

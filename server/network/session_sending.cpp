@@ -135,8 +135,7 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
     queue_.push(std::move(frame), kind);
     if (queue_.exceeds_limit()) {
         host_.limit_counters.met(Limit::QueuedResponseBytes);
-        log::warn({.session = number_, .client = by()}, "session {}: {} closed: the client does not read its answers",
-                  number_, by());
+        log_line(log::Level::Warn, {}, "closed: the client does not read its answers");
         close();
         return;
     }

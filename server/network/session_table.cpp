@@ -11,64 +11,91 @@
 namespace evod::network {
 namespace {
 
-/// The user whose share of the memory a session uses: the name of its token or, without one, its address.
-const std::string& account_of(const Session& session) {
-    const bool has_name = session.greeted() && !session.visitor().name.empty();
-    return has_name ? session.visitor().name : session.address_prefix();
+base::Refusal to_make_room(const char* why) {
+    return refusal(base::RefusalCode::ResourceExhausted, why, base::Reason::SessionsMax);
 }
 
 } // namespace
 
 void SessionTable::accept(std::unique_ptr<Transport> transport) {
+    limit_farewells();
     const auto session = std::make_shared<Session>(std::move(transport), host_, ++last_number_);
-    ++connection_count_;
     host_.traffic.connections.add();
-    if (going_away_) {
-        return session->start(refusal(base::RefusalCode::Unavailable,
-                                      "the server is shutting down: connect again after the restart",
-                                      base::Reason::ServerGoingAway));
-    }
-    const auto has_same_address = [&](const auto& other) {
-        return other.second->address_prefix() == session->address_prefix();
-    };
-    const bool all_full = sessions_.size() >= bounds_.sessions_max;
-    const bool address_full = std::ranges::count_if(sessions_, has_same_address) >= bounds_.sessions_per_address_max;
-    if (all_full || address_full) {
-        host_.limit_counters.met(address_full ? Limit::SessionsPerAddress : Limit::Sessions);
-        const auto silent = std::ranges::find_if(sessions_, [&](const auto& other) {
-            return !other.second->greeted() && (!address_full || has_same_address(other));
+    const base::Quota present = newcomers();
+    const auto verdict = present.ask(session->account());
+    if (verdict != base::Quota::Verdict::Free) {
+        host_.limit_counters.met(Limit::Newcomers);
+        const std::string& from = verdict == base::Quota::Verdict::UserFull ? session->account() : present.largest();
+        const auto oldest = std::ranges::find_if(sessions_, [&](const auto& other) {
+            return !other.second->greeted() && !other.second->is_over() && other.second->account() == from;
         });
-        const bool may_get_goodbye = connection_count_ - sessions_.size() <= farewells_max;
-        if (silent == sessions_.end()) {
-            if (may_get_goodbye) {
-                session->start(refusal(base::RefusalCode::ResourceExhausted,
-                                       address_full ? "there are " + std::to_string(bounds_.sessions_per_address_max) +
-                                                          " sessions from this address: end one of them first"
-                                                    : "the server has " + std::to_string(bounds_.sessions_max) +
-                                                          " sessions: try again when one has ended",
-                                       base::Reason::SessionsMax));
-            } else {
-                --connection_count_; // the connection is closed without a Goodbye
-            }
-            return;
-        }
-        const SessionPtr first = silent->second;
-        sessions_.erase(silent);
-        if (may_get_goodbye) {
-            first->fail(refusal(
-                base::RefusalCode::ResourceExhausted,
-                "connection dropped to make room, no Hello was received: connect again and send a Hello at once",
-                base::Reason::SessionsMax));
-        } else {
-            first->close();
-        }
+        oldest->second->fail(
+            to_make_room("no Hello was received, and another connection needs the place: connect again "
+                         "and send a Hello at once"));
     }
     sessions_.emplace(session->number(), session);
-    session->start();
+    session->start(going_away_ ? std::optional{refusal(base::RefusalCode::Unavailable,
+                                                       "the server is shutting down: connect again after the restart",
+                                                       base::Reason::ServerGoingAway)}
+                               : std::nullopt);
+}
+
+void SessionTable::limit_farewells() {
+    const auto is_ending = [](const auto& session) { return session.second->is_over(); };
+    if (static_cast<std::size_t>(std::ranges::count_if(sessions_, is_ending)) >= farewells_max) {
+        std::ranges::find_if(sessions_, is_ending)->second->close();
+    }
+}
+
+std::optional<base::Refusal> SessionTable::make_room(const std::string& account) {
+    const base::Quota held = places();
+    const auto verdict = held.ask(account);
+    if (verdict == base::Quota::Verdict::Free) {
+        return std::nullopt;
+    }
+    const auto is_idle_of_largest = [&](const auto& other) {
+        const Session& session = *other.second;
+        return session.greeted() && !session.is_over() && session.account() == held.largest() &&
+               session.requests.commands_under_way == 0;
+    };
+    const auto oldest = verdict == base::Quota::Verdict::FromLargest
+                            ? std::ranges::find_if(sessions_, is_idle_of_largest)
+                            : sessions_.end();
+    if (oldest != sessions_.end()) {
+        host_.limit_counters.took_back(Limit::Sessions);
+        oldest->second->fail(to_make_room("another user needs the place, and this user has the most sessions"));
+        return std::nullopt;
+    }
+    host_.limit_counters.met(Limit::Sessions);
+    return refusal(base::RefusalCode::ResourceExhausted,
+                   verdict == base::Quota::Verdict::UserFull
+                       ? "there are " + std::to_string(held.share()) +
+                             " sessions of this user, or from this address without a token: end one of them first"
+                       : "the server has " + std::to_string(sessions_max_) + " sessions: try again when one has ended",
+                   base::Reason::SessionsMax);
+}
+
+base::Quota SessionTable::places() const {
+    base::Quota held{sessions_max_};
+    for (const auto& [number, session] : sessions_) {
+        if (session->greeted() && !session->is_over()) {
+            held.take(session->account());
+        }
+    }
+    return held;
+}
+
+base::Quota SessionTable::newcomers() const {
+    base::Quota held{newcomers_max};
+    for (const auto& [number, session] : sessions_) {
+        if (!session->greeted() && !session->is_over()) {
+            held.take(session->account());
+        }
+    }
+    return held;
 }
 
 void SessionTable::forget(const Session& session) {
-    --connection_count_;
     ++ended_count_;
     sessions_.erase(session.number());
 }
@@ -87,8 +114,8 @@ void SessionTable::evict() {
     }
     for (const auto& [number, session] : sessions_) {
         if (const std::size_t bytes = session->held_bytes() + shared[number]; bytes > 0) {
-            users.take(account_of(*session), bytes);
-            sessions_of[account_of(*session)].push_back({session, bytes, session->requests.has_command_under_way()});
+            users.take(session->account(), bytes);
+            sessions_of[session->account()].push_back({session, bytes, session->requests.commands_under_way > 0});
         }
     }
     for (auto& [account, sessions] : sessions_of) {

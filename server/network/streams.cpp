@@ -65,10 +65,10 @@ void Streams::update_demand() {
 }
 
 void Streams::deliver(runtime::Outbox::Taken taken) {
-    if (taken.dropped_events > 0) {
+    for (const auto& [user, count] : taken.dropped_events) {
         for (const auto& [number, session] : sessions_) {
-            if (!session->events.empty()) {
-                session->count_dropped_events(taken.dropped_events);
+            if (!session->events.empty() && (user.empty() || session->account() == user)) {
+                session->count_dropped_events(count);
             }
         }
     }
@@ -85,8 +85,8 @@ void Streams::publish(v1::Event event) {
             return item.second.world ? world.empty() || *item.second.world == world
                                      : simulation::is_world_name(world) || world.empty();
         });
-        // A subscription to snapshots ends with this event, although the session may have no subscription to events.
-        const bool ends_snapshots = event.has_world_damaged() &&
+        // A subscription to snapshots ends with these events, although the session may have no subscription to events.
+        const bool ends_snapshots = (event.has_world_damaged() || event.has_world_deleted()) &&
                                     std::ranges::any_of(session->snapshots.subscriptions,
                                                         [&](const auto& item) { return item.second.world == world; });
         if (!wanted && !ends_snapshots) {
@@ -105,14 +105,14 @@ void Streams::publish(v1::Event event) {
     }
 }
 
-std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)>
-Streams::outlet(runtime::Outbox& outbox) {
-    return [this, &outbox](const simulation::Laboratory& laboratory, const std::vector<simulation::Event>& events) {
+decltype(runtime::LoopOutputs::events) Streams::outlet(runtime::Outbox& outbox) {
+    return [this, &outbox](const simulation::Laboratory& laboratory, const std::vector<simulation::Event>& events,
+                           const runtime::LoopOutputs::UserOf& user_of) {
         if (!simulations_.events_wanted()) {
             return;
         }
         for (const simulation::Event& event : events) {
-            outbox.event(protocol::to_proto(event, laboratory));
+            outbox.event(protocol::to_proto(event, laboratory), user_of(event.world));
         }
     };
 }

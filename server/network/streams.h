@@ -43,9 +43,9 @@ class Streams {
     /// Must be called when a world was deleted. Its snapshots and events are no longer sent.
     void forget_world(const std::string& world);
 
-    /// Returns a function for the simulation thread. It puts events into the outbox if any session is subscribed to
+    /// Returns a function for the simulation threads. It puts events into the outbox if any session is subscribed to
     /// events.
-    std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> outlet(runtime::Outbox& outbox);
+    decltype(runtime::LoopOutputs::events) outlet(runtime::Outbox& outbox);
     /// Stores the snapshots for send_some(), and counts dropped events.
     void deliver(runtime::Outbox::Taken taken);
     /// Distributes the next islands of snapshots to the sessions. Returns true if islands remain for another call.

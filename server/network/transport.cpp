@@ -248,7 +248,7 @@ std::string address_key(const asio::ip::address& address) {
     if (address.to_v6().is_v4_mapped()) {
         return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
     }
-    std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
+    std::fill(bytes.begin() + 6, bytes.end(), static_cast<unsigned char>(0));
     return asio::ip::address_v6{bytes}.to_string();
 }
 

@@ -113,7 +113,8 @@ class Transport {
 /// Formats an address and a port: "127.0.0.1:51234".
 std::string to_text(const tcp::endpoint& endpoint);
 
-/// The part of an address that identifies one user: the IPv4 address, or the /64 prefix of the IPv6 address.
+/// The part of an address that identifies one site: the IPv4 address, or the /48 prefix of the IPv6 address, because a
+/// site has up to 65,536 /64 prefixes (RFC 6177).
 std::string address_key(const asio::ip::address& address);
 
 } // namespace evod::network

@@ -7,6 +7,7 @@
 // Determinism  World applies the changes; they depend only on its schedule, its parameters and its moment.
 #pragma once
 
+#include "server/base/actor.h"
 #include "server/base/result.h"
 #include "server/parameters/parameters.h"
 
@@ -63,7 +64,7 @@ struct PlannedChange {
     std::uint64_t id = 0; // 1 for the first planned change of the run
     PlannedMoment at;
     std::vector<Assignment> assignments;
-    std::string by; // the author's name as other clients see it
+    base::Actor by; // the author
 
     friend bool operator==(const PlannedChange&, const PlannedChange&) = default;
 };

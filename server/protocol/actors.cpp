@@ -2,7 +2,6 @@
 
 #include <google/protobuf/descriptor.h>
 
-#include <string>
 #include <vector>
 
 namespace evod::protocol {
@@ -13,21 +12,20 @@ v1::Actor actor_of_kind(v1::ActorKind kind) {
     return actor;
 }
 
-v1::Actor actor_of(std::string_view by) {
-    if (by == by_the_server) {
+v1::Actor to_proto(const base::Actor& actor) {
+    switch (actor.kind) {
+    case base::Actor::Kind::Schedule:
+        return actor_of_kind(v1::ACTOR_KIND_SCHEDULE);
+    case base::Actor::Kind::Server:
         return actor_of_kind(v1::ACTOR_KIND_SERVER);
+    case base::Actor::Kind::Client:
+        break;
     }
-    v1::Actor actor = actor_of_kind(v1::ACTOR_KIND_CLIENT);
-    if (const auto end = by.find(": "); end != std::string_view::npos) { // no client's name contains ": "
-        actor.set_user(std::string{by.substr(0, end)});
-        by.remove_prefix(end + 2);
-    }
-    const auto end = by.rfind(' ');
-    actor.set_client(std::string{by.substr(0, end)});
-    if (end != std::string_view::npos) {
-        actor.set_address(std::string{by.substr(end + 1)});
-    }
-    return actor;
+    v1::Actor to = actor_of_kind(v1::ACTOR_KIND_CLIENT);
+    to.set_user(actor.user);
+    to.set_client(actor.program);
+    to.set_address(actor.address);
+    return to;
 }
 
 void keep_users_only(google::protobuf::Message& message) {

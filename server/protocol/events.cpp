@@ -14,15 +14,6 @@ namespace evod::protocol {
 
 using base::Overloaded;
 
-namespace {
-
-/// Returns the client that planned a change, or the schedule if `planned`, a PlannedChange::id, is 0.
-v1::Actor planner(std::uint64_t planned, const std::string& by) {
-    return planned == 0 ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(by);
-}
-
-} // namespace
-
 v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory) {
     v1::Event message;
     message.set_world(event.world);
@@ -62,7 +53,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    },
                    [&](const simulation::ParametersChanged& changed) {
                        auto& to = *message.mutable_parameters_changed();
-                       *to.mutable_by() = planner(changed.planned, changed.by);
+                       *to.mutable_by() = to_proto(changed.by);
                        to.set_revision(changed.revision);
                        to.set_planned_change(changed.planned);
                        if (const auto entry = laboratory.find(event.world)) {
@@ -74,7 +65,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    },
                    [&](const simulation::ChangeDropped& dropped) {
                        auto& to = *message.mutable_change_dropped();
-                       *to.mutable_by() = planner(dropped.planned, dropped.by);
+                       *to.mutable_by() = to_proto(dropped.by);
                        to.set_planned_change(dropped.planned);
                        to.mutable_name()->Assign(dropped.names.begin(), dropped.names.end());
                        *to.mutable_violations() = to_proto(base::Refusal{.code = base::RefusalCode::InvalidArgument,
@@ -95,7 +86,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
 }
 
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
-                                  std::string_view by, const simulation::Laboratory& laboratory) {
+                                  const base::Actor& by, const simulation::Laboratory& laboratory) {
     v1::Event message;
     message.set_world(applied.world);
     message.set_tick(applied.tick);
@@ -104,7 +95,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
         message.set_run_id(to_text((*entry)->run_id));
     }
     const auto set_world = [&](auto& to) {
-        *to.mutable_by() = actor_of(by);
+        *to.mutable_by() = to_proto(by);
         if (entry) {
             *to.mutable_world() = to_proto(**entry);
         }
@@ -114,7 +105,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
             [&](const simulation::CreateWorld&) { set_world(*message.mutable_world_created()); },
             [&](const simulation::ForkWorld&) { set_world(*message.mutable_world_created()); },
             [&](const simulation::ResetWorld&) { set_world(*message.mutable_world_reset()); },
-            [&](const simulation::DeleteWorld&) { *message.mutable_world_deleted()->mutable_by() = actor_of(by); },
+            [&](const simulation::DeleteWorld&) { *message.mutable_world_deleted()->mutable_by() = to_proto(by); },
             [&](const simulation::SetParameters& set) {
                 if (set.dry_run) {
                     return;
@@ -127,7 +118,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                     return;
                 }
                 auto& to = *message.mutable_parameters_changed();
-                *to.mutable_by() = actor_of(by);
+                *to.mutable_by() = to_proto(by);
                 to.set_revision(applied.parameters->revision);
                 for (const auto& assignment : set.assignments) {
                     if (const auto* description = parameters::find_parameter(assignment.name)) {
@@ -137,22 +128,22 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
             },
             [&](const simulation::CancelChange&) {
                 auto& to = *message.mutable_change_cancelled();
-                *to.mutable_by() = actor_of(by);
+                *to.mutable_by() = to_proto(by);
                 if (applied.planned) {
                     *to.mutable_change() = to_proto(*applied.planned);
                 }
             },
             [&](const simulation::PlaceEntities&) {
                 *message.mutable_placed() = placed_message(*applied.placed);
-                *message.mutable_placed()->mutable_by() = actor_of(by);
+                *message.mutable_placed()->mutable_by() = to_proto(by);
             },
             [&](const simulation::RemoveEntities&) {
                 *message.mutable_removed() = removed_message(*applied.removed);
-                *message.mutable_removed()->mutable_by() = actor_of(by);
+                *message.mutable_removed()->mutable_by() = to_proto(by);
             },
             [&](const simulation::SetFitness& set) {
                 auto& to = *message.mutable_fitness_set();
-                *to.mutable_by() = actor_of(by);
+                *to.mutable_by() = to_proto(by);
                 to.set_generation(set.generation);
                 to.set_island(set.island);
                 to.set_organism_count(static_cast<std::uint32_t>(set.fitness.size()));

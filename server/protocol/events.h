@@ -6,7 +6,6 @@
 #include "server/simulation/laboratory.h"
 
 #include <optional>
-#include <string_view>
 
 namespace evod::protocol {
 
@@ -15,9 +14,9 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
 
 /// Returns the event that reports an applied command to subscribers; nullopt for a dry run.
 ///
-/// by  the sender, in the text format that actor_of() parses.
+/// by  the sender.
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
-                                  std::string_view by, const simulation::Laboratory& laboratory);
+                                  const base::Actor& by, const simulation::Laboratory& laboratory);
 
 /// Returns the event that reports a world that has stopped, because its run file is damaged.
 v1::Event event_of(const simulation::DamagedWorld& damaged);

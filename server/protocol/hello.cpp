@@ -49,11 +49,7 @@ std::optional<base::Refusal> refusal_of(const v1::Hello& hello) {
 }
 
 std::string client_name_of(const v1::Hello& hello) {
-    std::string name = hello.client_name().empty() ? "unnamed" : quotable(hello.client_name());
-    for (auto colon = name.find(": "); colon != std::string::npos; colon = name.find(": ")) {
-        name[colon] = ' ';
-    }
-    return name;
+    return hello.client_name().empty() ? "unnamed" : quotable(hello.client_name());
 }
 
 } // namespace evod::protocol

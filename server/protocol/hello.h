@@ -12,8 +12,7 @@ namespace evod::protocol {
 /// Returns a refusal if a field is invalid or if there is no common protocol version; nullopt if the Hello is valid.
 std::optional<base::Refusal> refusal_of(const v1::Hello& hello);
 
-/// The client's name for logs and actors. It is never empty. It does not contain ": ", because these characters
-/// separate the user from the client in an actor's text.
+/// The client's name for logs and actors. It is never empty.
 std::string client_name_of(const v1::Hello& hello);
 
 } // namespace evod::protocol

@@ -129,14 +129,14 @@ v1::PlannedChange to_proto(const parameters::PlannedChange& change) {
         assigned.set_name(assignment.name);
         *assigned.mutable_value() = to_proto(assignment.value);
     }
-    *to.mutable_by() = actor_of(change.by);
+    *to.mutable_by() = to_proto(change.by);
     return to;
 }
 
 v1::AppliedChange to_proto(const simulation::Change& change) {
     v1::AppliedChange to;
     to.set_generation(change.generation);
-    *to.mutable_by() = change.by.empty() ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(change.by);
+    *to.mutable_by() = to_proto(change.by);
     for (const simulation::ChangedValue& value : change.values) {
         v1::ChangedValue& changed = *to.add_values();
         changed.set_name(value.name);

@@ -94,7 +94,7 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
         log::warn("{} is ignored: the name of a run file is NAME.evod, where NAME is a valid world name", file);
     }
 
-    std::vector<std::string> ended = files->ended;
+    std::vector<std::string> ended = files->ended, damaged;
     for (const std::string& file : files->of_worlds) {
         if (archive->is_damaged(run_file::world_of(file))) {
             continue;
@@ -109,34 +109,56 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
             ended.push_back(*brought);
         }
     }
-    archive->read_ended_answers(ended);
+    for (const std::string& file : files->of_worlds) {
+        if (archive->is_damaged(run_file::world_of(file))) {
+            damaged.push_back(file);
+        }
+    }
+    archive->read_ended_answers(ended, damaged);
     return archive;
 }
 
-void Archive::read_ended_answers(const std::vector<std::string>& paths) {
+void Archive::read_ended_answers(const std::vector<std::string>& ended, const std::vector<std::string>& damaged) {
     struct EndedRun {
         std::filesystem::file_time_type when;
         std::string path;
+        bool has_ended; // otherwise the world is damaged, and only the keys are read
+        std::vector<run_file::UsedKey> keys = {};
         std::vector<run_file::JournalEntry> last = {};
     };
     std::vector<EndedRun> runs;
-    for (const std::string& path : paths) {
-        std::error_code error;
-        runs.push_back({std::filesystem::last_write_time(path, error), path});
+    for (const auto* paths : {&ended, &damaged}) {
+        for (const std::string& path : *paths) {
+            std::error_code error;
+            runs.push_back({std::filesystem::last_write_time(path, error), path, paths == &ended});
+        }
     }
     std::ranges::sort(runs, std::greater{}, [](const EndedRun& run) { return std::tie(run.when, run.path); });
     std::size_t bytes = 0;
     for (EndedRun& run : runs) {
         const auto file = run_file::RunFile::open_read_only(run.path);
-        if (!file) {
-            continue; // no world depends on this file; a later opening reports the reason
+        if (!file) { // no world depends on this file
+            log::warn(
+                "{} cannot be read, so commands that it contains may be applied again if a client repeats them: {}",
+                run.path, file.error().message);
+            continue;
         }
         const std::uint64_t last = (*file)->journal().last_number();
-        const std::uint64_t count = std::min<std::uint64_t>(
+        std::uint64_t count = 0;
+        if (run.has_ended) {
             // The last answer in a file is the answer to the command that ended the run.
-            last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1);
-        if (auto entries = (*file)->journal().read(last + 1 - count)) {
-            run.last = *std::move(entries);
+            count = std::min<std::uint64_t>(last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1);
+            if (auto entries = (*file)->journal().read(last + 1 - count)) {
+                run.last = *std::move(entries);
+            } else {
+                count = 0;
+            }
+        }
+        if (auto keys = (*file)->journal().used_keys(last - count, keys_kept_of_ended)) {
+            run.keys = *std::move(keys);
+        } else {
+            log::warn("{} is damaged, so commands that it contains may be applied again if a client repeats them: {}",
+                      run.path, keys.error().message);
         }
         for (const run_file::JournalEntry& entry : run.last) {
             bytes += entry.origin.request.size() + entry.answer.size();
@@ -144,6 +166,7 @@ void Archive::read_ended_answers(const std::vector<std::string>& paths) {
     }
     std::vector<run_file::JournalEntry> answers;
     for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
+        std::ranges::move(run->keys, std::back_inserter(used_keys_));
         std::ranges::move(run->last, std::back_inserter(answers));
     }
     std::ranges::move(answers_, std::back_inserter(answers));

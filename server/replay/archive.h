@@ -21,6 +21,8 @@ class Archive {
     /// last answer.
     static constexpr std::uint32_t answers_kept_of_ended = 1000;
     static constexpr std::size_t answers_of_ended_bytes_max = 64 << 20;
+    /// For older commands, the reply cache gets the highest request_id of up to this number of client keys of each run.
+    static constexpr std::size_t keys_kept_of_ended = 100'000;
 
     /// Locks the folder and recovers every world. A world that cannot be recovered becomes a damaged world, with the
     /// reason and what can be done; its file is not changed. Refused if the folder cannot be used.
@@ -41,6 +43,10 @@ class Archive {
     /// run, in the order of application. Must be called only once.
     std::vector<run_file::JournalEntry> take_answers() { return std::move(answers_); }
 
+    /// Removes from the archive, and returns, the client keys of commands whose answers are not among take_answers():
+    /// commands of ended runs and of damaged worlds. The key that was used last is the last one. Must be called only once.
+    std::vector<run_file::UsedKey> take_used_keys() { return std::move(used_keys_); }
+
     /// The storage thread; nullptr after close().
     recording::StorageThread* thread() { return thread_.get(); }
     recording::Recorder& recorder() { return *recorder_; }
@@ -54,8 +60,9 @@ class Archive {
 
   private:
     Archive(run_file::DataFolder folder, const run_file::RunFile::Options& options);
-    /// Reads the answers of ended runs and inserts them before the answers of recovered worlds.
-    void read_ended_answers(const std::vector<std::string>& paths);
+    /// Reads the answers of ended runs and inserts them before the answers of recovered worlds. Reads the client keys of
+    /// older commands, and those of damaged worlds.
+    void read_ended_answers(const std::vector<std::string>& ended, const std::vector<std::string>& damaged);
     /// Recovers one world. Returns an empty text if the world continues. If its run has ended, returns the new path of
     /// the file. Before the world is recovered, its file is only read.
     base::Result<std::string> recover_world(const std::string& path, const run_file::RunFile::Options& options,
@@ -71,6 +78,7 @@ class Archive {
     std::vector<run_file::RunIdentity> identities_;
     std::vector<std::string> damaged_; // names of the damaged worlds
     std::vector<run_file::JournalEntry> answers_;
+    std::vector<run_file::UsedKey> used_keys_;
 };
 
 } // namespace evod::replay

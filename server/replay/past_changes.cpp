@@ -19,7 +19,7 @@ struct Due {
     Kind kind;
     std::uint64_t generation; // Change::generation
     const std::vector<parameters::Assignment>* assignments;
-    const std::string* by;
+    const base::Actor* by;
 
     auto order() const { return std::tuple{reached, place, kind}; }
 };
@@ -36,7 +36,7 @@ simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldC
             cancelled.insert(*change.cancels);
         }
     }
-    const std::string no_client;
+    const base::Actor the_schedule;
     std::vector<Due> due; // commands and planned changes in order of the journal
     const auto add_at_tick = [&](const WorldChange& change, std::uint64_t tick, Due::Kind kind) {
         due.push_back({file.generations().at_tick(tick), tick + 1, kind, file.generations().at_tick(tick + 1),
@@ -60,7 +60,7 @@ simulation::Changes past_changes(run_file::RunFile& file, std::span<const WorldC
     }
     for (const auto& [generation, assignments] : identity.schedule.changes()) {
         if (generation > identity.first_generation && generation <= moment.generation) {
-            due.push_back({generation, 0, Due::Schedule, generation, &assignments, &no_client});
+            due.push_back({generation, 0, Due::Schedule, generation, &assignments, &the_schedule});
         }
     }
     simulation::Changes past;

@@ -154,8 +154,7 @@ Result<std::vector<WorldChange>> world_changes(const std::string& path,
         }
         tick = entry.tick;
         if (auto* change = std::get_if<simulation::SetParameters>(&*command)) {
-            changes.push_back(
-                {entry.number, entry.tick, std::move(change->assignments), change->at, entry.origin.client});
+            changes.push_back({entry.number, entry.tick, std::move(change->assignments), change->at, entry.origin.by});
         }
         if (const auto* cancel = std::get_if<simulation::CancelChange>(&*command)) {
             changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .cancels = cancel->id});

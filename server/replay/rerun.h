@@ -27,7 +27,7 @@ struct WorldChange {
     std::uint64_t tick = 0;  // the command was applied after this tick
     std::vector<parameters::Assignment> assignments;
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when the change takes effect; nullopt: at once
-    std::string by = {};                                        // the client that sent the command
+    base::Actor by = {};                                        // the client that sent the command
     std::optional<std::uint64_t> cancels = std::nullopt;        // id of the planned change that this command cancels
     // nullptr: it is another command. Copies of the change share it, because it may contain the fitness of an island.
     std::shared_ptr<const CheckedCommand> checked = nullptr;

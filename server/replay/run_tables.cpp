@@ -315,7 +315,7 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
     constexpr std::uint32_t entries_at_once = 1000;
     google::protobuf::util::JsonPrintOptions json_options;
     json_options.preserve_proto_field_names = true;
-    Table table{out, format, {"number", "tick", "client", "kind", "request"}};
+    Table table{out, format, {"number", "tick", "sender", "user", "program", "address", "kind", "request"}};
     for (std::uint64_t first = 1; out; first += entries_at_once) {
         const auto entries = run.file.journal().read(first, entries_at_once);
         if (!entries) {
@@ -334,9 +334,13 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
                                           " of its journal is not a request",
                                .violations = {}};
             }
+            const base::Actor& by = entry.origin.by;
             table.number(entry.number)
                 .number(entry.tick)
-                .text(only_users ? run_file::user_of(entry.origin) : entry.origin.client)
+                .text(by.kind == base::Actor::Kind::Server ? "server" : "client")
+                .text(by.user)
+                .text(only_users ? "" : by.program)
+                .text(only_users ? "" : by.address)
                 .text(kind_of(request))
                 .json(json)
                 .end_row();

@@ -2,6 +2,7 @@
 
 #include "server/run_file/check.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace evod::run_file {
@@ -24,6 +25,32 @@ base::Result<std::vector<JournalEntry>> Journal::read(std::uint64_t first, std::
         entries.push_back(std::move(entry));
     }
     return database_.unless_failed(std::move(entries));
+}
+
+base::Result<std::vector<UsedKey>> Journal::used_keys(std::uint64_t last, std::size_t keys_max) {
+    // Ids from 2^63 on are stored as negative numbers.
+    Statement keys{database_.database, "SELECT user, client_key, max(number), max(request_id), "
+                                       "max(CASE WHEN request_id < 0 THEN request_id END) FROM journal "
+                                       "WHERE number <= ? GROUP BY user, client_key ORDER BY 3 DESC LIMIT ?"};
+    keys.bind(0, static_cast<std::int64_t>(last));
+    keys.bind(1, static_cast<std::int64_t>(keys_max));
+    Statement sender{database_.database, "SELECT sender, address FROM journal WHERE number = ?"};
+    std::vector<UsedKey> used;
+    while (keys.row()) {
+        UsedKey& key = used.emplace_back();
+        key.by = base::client_actor(keys.text(0), {}, {});
+        key.client_key = keys.text(1);
+        key.highest_id = static_cast<std::uint64_t>(keys.is_null(4) ? keys.integer(3) : keys.integer(4));
+        if (key.by.user.empty()) { // a client without a token, or the server
+            sender.bind(0, keys.integer(2));
+            while (sender.row()) {
+                key.by.kind = static_cast<base::Actor::Kind>(sender.integer(0));
+                key.by.address = sender.text(1);
+            }
+        }
+    }
+    std::ranges::reverse(used);
+    return database_.unless_failed(std::move(used));
 }
 
 void Journal::write(const JournalEntry& entry) {

@@ -1,6 +1,7 @@
 // Records: the data that the recorder writes to a run file and that a replay reads from it. Tables: docs/RUN_FILE.md.
 #pragma once
 
+#include "server/base/actor.h"
 #include "server/base/state_hash.h"
 #include "server/evolution/next_generation.h"
 #include "server/run_file/build.h"
@@ -45,17 +46,11 @@ struct RunIdentity {
 
 /// Which client sent a command.
 struct Origin {
-    std::string client; // "user: program address"; "program address" if the session had no token
+    base::Actor by; // a client or the server
     std::string client_key;
     std::uint64_t request_id = 0;
     std::string request; // a serialized v1::Request
 };
-
-/// The user in Origin::client; empty if there is none. The name of a program never contains ": ".
-inline std::string user_of(const Origin& origin) {
-    const auto end = origin.client.find(": ");
-    return end == std::string::npos ? "" : origin.client.substr(0, end);
-}
 
 /// A command that the simulation has applied.
 struct JournalEntry {
@@ -64,6 +59,13 @@ struct JournalEntry {
     Origin origin;
     std::string answer;             // the frame that the client received
     simulation::RunControl control; // run control of the world after the command
+};
+
+/// A client key, with the highest request_id among commands in a journal.
+struct UsedKey {
+    base::Actor by; // the sender of one of the commands
+    std::string client_key;
+    std::uint64_t highest_id = 0;
 };
 
 /// A generation before its first tick. It determines everything later, together with the seed and the journal.

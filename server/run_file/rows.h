@@ -65,7 +65,10 @@ struct JournalTable {
     static void columns(R& row, C&& column) {
         column("number", row.number);
         column("tick", row.tick);
-        column("client", row.origin.client);
+        column("sender", row.origin.by.kind);
+        column("user", row.origin.by.user);
+        column("program", row.origin.by.program);
+        column("address", row.origin.by.address);
         column("client_key", row.origin.client_key);
         column("request_id", row.origin.request_id);
         column("request", Blob{row.origin.request});

@@ -38,6 +38,8 @@ void create_all_tables(Database& database) {
     create_tables<RunTable, FirstPopulationTable, ParametersTable, JournalTable, GenerationTable, PopulationTable,
                   OutcomeTable, StateHashTable, ThinnedTable, EndMarkTable, StatisticsTable, InheritedStatisticsTable,
                   CheckpointRowTable, CheckpointPartTable, FoundersTable, SelectionAccountTable>(database);
+    // Journal::used_keys() reads it.
+    database.run("CREATE INDEX journal_key ON journal (user, client_key, request_id)");
 }
 
 /// Files that were created in a format before 4 may lack the first of these tables. Files of chromosomes with body genes

@@ -9,7 +9,7 @@ namespace evod::run_file {
 constexpr std::int64_t application_id = 0x45564f44; // "EVOD", at byte 68 of the file
 /// Files of older formats are refused, because those formats were never released. All later versions of evod will read
 /// this format.
-constexpr std::int64_t format_version = 4;
+constexpr std::int64_t format_version = 5;
 
 /// Returns whether the chromosomes have genes beyond those of the body. If so, the file has the table of their numbers.
 bool has_more_genes(const parameters::Parameters& parameters);

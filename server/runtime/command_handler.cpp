@@ -261,7 +261,7 @@ CommandDone CommandHandler::done_of(CommandMail mail, const base::Result<simulat
         done.lease = (*entry)->control.lease;
     }
     if (tools_.demand.events_wanted()) {
-        done.event = protocol::event_of(done.mail.command, *applied, done.mail.origin.client, laboratory_);
+        done.event = protocol::event_of(done.mail.command, *applied, done.mail.origin.by, laboratory_);
     }
     return done;
 }

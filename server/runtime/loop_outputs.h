@@ -15,7 +15,10 @@ namespace evod::runtime {
 
 /// The functions run on the simulation thread, unless stated otherwise.
 struct LoopOutputs {
-    std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> events;
+    /// Returns whose replay a world is; empty: it is a live world.
+    using UserOf = std::function<std::string(const std::string& world)>;
+    std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>, const UserOf&)> events;
+    UserOf user_of = [](const std::string&) { return std::string{}; }; // set by the loop
     std::function<void(SnapshotPtr)> snapshot;
     /// Receives the replies. If runs are stored, also receives the receipts, on the storage thread.
     std::function<void(Reply)> reply = [](Reply) {};
@@ -31,7 +34,7 @@ struct LoopOutputs {
     void publish_events(simulation::Laboratory& laboratory) const {
         auto new_events = laboratory.take_events();
         if (!new_events.empty()) {
-            events(laboratory, std::move(new_events));
+            events(laboratory, std::move(new_events), user_of);
         }
     }
 };

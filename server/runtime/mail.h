@@ -29,6 +29,7 @@ struct CommandMail {
     run_file::Origin origin;
     std::string request_name;  // name of the field in the request: "set_parameters"
     std::uint64_t session = 0; // number of the sender's session; 0: the server itself
+    std::string user = {};     // whose quota pays
 };
 
 /// A query that reads the laboratory. The simulation thread answers it between two ticks, when the query budget allows
@@ -37,6 +38,7 @@ struct QueryMail {
     std::uint64_t session = 0; // number of the sender's session
     std::shared_ptr<const v1::Request> request;
     bool users_only = false; // the answer must not contain the programs and addresses of other clients
+    std::string user = {};   // whose quota pays
 };
 
 /// The stored run of a world.
@@ -66,7 +68,7 @@ struct CloseReplay {
 struct ReplayMail {
     std::variant<OpenReplay, Seek, CloseReplay> request;
     std::uint64_t session = 0; // number of the sender's session, >= 1
-    std::string user = {};     // whose account pays for the time of the replay and its seeks
+    std::string user = {};     // whose quota pays
     std::uint64_t request_id = 0;
     std::string request_name = {};    // name of the field in the request: "open_replay"
     std::optional<FoundRun> run = {}; // OpenReplay: the run to show. Seek: the present run of the original world
@@ -99,6 +101,13 @@ struct WorldBrought {
     std::shared_ptr<base::Result<simulation::World>> world; // moved out by the reader
 };
 
+/// A replay has lost its place to another user. It is closed; if it is still being opened, the request is refused.
+struct EndReplay {
+    std::uint64_t session = 0;    // number of the session that opens it
+    std::uint64_t request_id = 0; // of the request that opens it
+    std::string name = {};        // empty: it is being opened
+};
+
 /// A session has ended. Its query is dropped, its replays are closed and its seeks are cancelled.
 struct SessionEnded {
     std::uint64_t session = 0;
@@ -129,7 +138,7 @@ struct RecordsRead {
     std::shared_ptr<const base::Result<replay::NewRecords>> records;
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, ForkComing, WorldBrought,
+using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, ForkComing, WorldBrought, EndReplay,
                           SessionEnded, Ping, WorldBuilt, SeekRead, RecordsRead>;
 
 } // namespace evod::runtime

@@ -1,29 +1,30 @@
 #include "server/runtime/mailbox.h"
 
-#include <limits>
 #include <utility>
 
 namespace evod::runtime {
 
-bool Mailbox::try_push(Mail&& mail) {
-    return push(std::move(mail), capacity_);
-}
-
-void Mailbox::push(Mail&& mail) {
-    push(std::move(mail), std::numeric_limits<std::size_t>::max());
-}
-
-bool Mailbox::push(Mail&& mail, std::size_t capacity) {
+bool Mailbox::try_push(Mail&& mail, const std::string& user) {
     {
         const std::lock_guard lock{mutex_};
-        if (waiting_.size() >= capacity) {
+        if (places_.ask(user) != base::Quota::Verdict::Free) {
             return false;
         }
+        places_.take(user);
         waiting_.push_back(std::move(mail));
         pending_.store(true, std::memory_order_release);
     }
     changed_.notify_one();
     return true;
+}
+
+void Mailbox::push(Mail&& mail) {
+    {
+        const std::lock_guard lock{mutex_};
+        waiting_.push_back(std::move(mail));
+        pending_.store(true, std::memory_order_release);
+    }
+    changed_.notify_one();
 }
 
 void Mailbox::wake() {
@@ -38,13 +39,14 @@ std::vector<Mail> Mailbox::drain(std::vector<Mail> emptied) {
     emptied.clear();
     const std::lock_guard lock{mutex_};
     pending_.store(false, std::memory_order_release);
+    places_.give_back_all();
     waiting_.swap(emptied);
     return emptied;
 }
 
-Mailbox::FillLevel Mailbox::fill() const {
+base::Quota Mailbox::places() const {
     const std::lock_guard lock{mutex_};
-    return {.waiting = waiting_.size(), .capacity = capacity_};
+    return places_;
 }
 
 void Mailbox::wait(std::optional<Clock::time_point> until) {

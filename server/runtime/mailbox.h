@@ -1,10 +1,11 @@
 // Mailbox: a queue of commands and queries (mail.h) for the simulation thread, in order of arrival.
 //
 // Threads      any thread adds mail. The simulation thread removes it between two ticks.
-// Full         when it contains `mailbox_commands_max` entries, try_push() fails and the sender receives
-//              REASON_SERVER_BUSY.
+// Full         when it contains `mailbox_commands_max` entries, or half as many of one user, try_push() fails and the
+//              sender receives REASON_SERVER_BUSY.
 #pragma once
 
+#include "server/base/quota.h"
 #include "server/runtime/clock.h"
 #include "server/runtime/mail.h"
 
@@ -12,6 +13,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace evod::runtime {
@@ -20,10 +22,10 @@ constexpr std::size_t mailbox_commands_max = 1024;
 
 class Mailbox {
   public:
-    explicit Mailbox(std::size_t capacity = mailbox_commands_max) : capacity_{capacity} {}
+    explicit Mailbox(std::size_t capacity = mailbox_commands_max) : places_{capacity} {}
 
-    /// Adds mail. Returns false if the mailbox is full; `mail` is then unchanged.
-    bool try_push(Mail&& mail);
+    /// Adds mail. Returns false if the mailbox, or the user's half of it, is full; `mail` is then unchanged.
+    bool try_push(Mail&& mail, const std::string& user);
     /// Adds mail regardless of the capacity. Use it for mail that must not be lost and whose amount is bounded
     /// elsewhere.
     void push(Mail&& mail);
@@ -37,21 +39,17 @@ class Mailbox {
     /// Removes and returns all entries, oldest first. The result reuses the memory of `emptied`.
     std::vector<Mail> drain(std::vector<Mail> emptied = {});
 
-    struct FillLevel {
-        std::size_t waiting = 0, capacity = 0;
-    };
-    FillLevel fill() const;
+    /// The places that are held, by user.
+    base::Quota places() const;
 
     /// Waits until there is mail, wake() is called, or the time `until` is reached; nullopt: no time limit.
     void wait(std::optional<Clock::time_point> until);
 
   private:
-    bool push(Mail&& mail, std::size_t capacity);
-
-    const std::size_t capacity_;
     std::atomic<bool> pending_ = false;
     mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
+    base::Quota places_;
     std::vector<Mail> waiting_;
 };
 

@@ -11,13 +11,17 @@ void Outbox::add(Delivery delivery) {
     added(std::move(lock));
 }
 
-void Outbox::event(v1::Event event) {
+void Outbox::event(v1::Event event, const std::string& user) {
     std::unique_lock lock{mutex_};
-    if (events_waiting_ < events_max_) {
+    const bool of_replay = !user.empty();
+    if (events_waiting_ < events_max_ && (!of_replay || of_replays_.ask(user) == base::Quota::Verdict::Free)) {
         waiting_.deliveries.push_back(std::move(event));
         ++events_waiting_;
+        if (of_replay) {
+            of_replays_.take(user);
+        }
     } else {
-        ++waiting_.dropped_events;
+        ++waiting_.dropped_events[user];
     }
     added(std::move(lock));
 }
@@ -51,6 +55,7 @@ Outbox::Taken Outbox::take() {
     const std::lock_guard lock{mutex_};
     woken_ = false;
     events_waiting_ = 0;
+    of_replays_.give_back_all();
     return std::exchange(waiting_, {});
 }
 

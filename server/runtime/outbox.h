@@ -3,17 +3,20 @@
 //
 // Threads      the simulation threads add data, the storage thread adds receipts, and background jobs add their results.
 //              `wake` notifies the network thread, which then takes all data.
-// Full         the mailbox and the sessions bound the number of replies. At most `events_max` events wait; further ones
-//              are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted. Changes
+// Full         the mailbox and the sessions bound the number of replies. At most `events_max` events wait, of which half
+//              may be of replays, and half of these of one user's replays; further ones are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted. Changes
 //              of the state of run files are rare and never dropped.
 #pragma once
 
+#include "server/base/quota.h"
 #include "server/runtime/replies.h"
 #include "server/runtime/snapshot.h"
 #include "server/simulation/laboratory.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <variant>
@@ -36,10 +39,11 @@ class Outbox {
   public:
     /// wake  called when the first entry is added to an empty outbox, on the thread that adds it. Must not block.
     explicit Outbox(std::function<void()> wake, std::size_t events_max = outbox_events_max)
-        : wake_{std::move(wake)}, events_max_{events_max} {}
+        : wake_{std::move(wake)}, events_max_{events_max}, of_replays_{std::max<std::size_t>(events_max / 2, 1)} {}
 
     void reply(Reply reply) { add(std::move(reply)); }
-    void event(v1::Event event);
+    /// user  whose replay the event is about; empty: it is about a live world, or the server.
+    void event(v1::Event event, const std::string& user = {});
     void storage(StorageChanged changed) { add(std::move(changed)); }
     void damaged(simulation::DamagedWorld world) { add(std::move(world)); }
     void snapshot(SnapshotPtr snapshot);
@@ -52,7 +56,8 @@ class Outbox {
     };
     struct Taken {
         std::vector<Delivery> deliveries;
-        std::uint64_t dropped_events = 0;      // number of events dropped since the last take()
+        // Number of events dropped since the last take(). Key: whose replays they are about; empty: all other events.
+        std::map<std::string, std::uint64_t> dropped_events;
         std::vector<NewestSnapshot> snapshots; // at most one of each world
     };
     Taken take();
@@ -71,6 +76,7 @@ class Outbox {
     mutable std::mutex mutex_; // guards the members below
     Taken waiting_;
     std::size_t events_waiting_ = 0;
+    base::Quota of_replays_; // the events of replays, by user
     bool woken_ = false;
 };
 

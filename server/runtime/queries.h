@@ -2,7 +2,7 @@
 //
 // The budget grows by a fixed share of the elapsed time, up to a small maximum for bursts. A query that takes longer
 // than the budget leaves a debt. The next query waits until the debt is paid. So queries slow a world by at most that
-// share, even if clients send them without pause.
+// share, even if clients send them without pause. The time is divided equally among the users who want it.
 //
 // Owner        a simulation loop, on its thread.
 // Full         never: a session has at most one query under way.
@@ -12,6 +12,7 @@
 #include "server/protocol/queries.h"
 #include "server/runtime/clock.h"
 #include "server/runtime/replies.h"
+#include "server/runtime/time_shares.h"
 
 #include <algorithm>
 #include <deque>
@@ -31,10 +32,13 @@ class Queries {
     }
     bool empty() const { return waiting_.empty(); }
 
-    /// Answers the oldest query. There must be one.
+    /// Answers the oldest query of the user for whom the least time was spent. There must be one.
     QueryDone answer_next(const simulation::Laboratory& laboratory) {
-        QueryDone done{.mail = std::move(waiting_.front()), .response = {}, .result = {}};
-        waiting_.pop_front();
+        const auto next = std::ranges::min_element(
+            waiting_, {}, [this](const QueryMail& query) { return shares_.spent(query.user); });
+        QueryDone done{.mail = std::move(*next), .response = {}, .result = {}};
+        waiting_.erase(next);
+        shares_.serve(done.mail.user);
         const v1::Request& request = *done.mail.request;
         done.response.set_request_id(request.request_id());
         done.result = protocol::answer_query(request, laboratory, done.mail.users_only, done.response);
@@ -47,8 +51,15 @@ class Queries {
         earned_until_ = now;
         return saved_ > Clock::duration::zero();
     }
-    /// Notes the time that a query took while work was due.
-    void spend(Clock::duration time) { saved_ -= time; }
+    /// Notes the time that a query of a user took.
+    ///
+    /// work_was_due  it counts against the budget.
+    void spend(const std::string& user, Clock::duration time, bool work_was_due) {
+        shares_.spend(user, time);
+        if (work_was_due) {
+            saved_ -= time;
+        }
+    }
     /// The earliest time at which the next query may be answered. allows() must be called first.
     Clock::time_point next_at() const {
         return earned_until_ + std::max(Clock::duration{1} - saved_, Clock::duration::zero()) * share;
@@ -56,6 +67,7 @@ class Queries {
 
   private:
     std::deque<QueryMail> waiting_;
+    TimeShares shares_;
     Clock::time_point earned_until_; // initially the clock's epoch, so that the budget starts full
     Clock::duration saved_{0};       // negative: a debt
 };

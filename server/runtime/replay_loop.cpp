@@ -24,14 +24,17 @@ Refusal with_prefix(const std::string& prefix, Refusal refused) {
     return refused;
 }
 
-Refusal no_room(std::string message) {
-    return refusal(RefusalCode::ResourceExhausted, std::move(message), base::Reason::ReplaysMax);
+LoopOutputs with_users(LoopOutputs outputs, LoopOutputs::UserOf user_of) {
+    outputs.user_of = std::move(user_of);
+    return outputs;
 }
 
 } // namespace
 
-ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file)
-    : SimulationLoop{tools, std::move(outputs)}
+ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file,
+                       simulation::Laboratory laboratory)
+    : SimulationLoop{tools, with_users(std::move(outputs), [this](const std::string& world) { return user_of(world); }),
+                     std::move(laboratory)}
     , hosts_worlds_{file.has_value()}
     , seeks_{tools.mailbox, jobs_, tools.executor}
     , shown_{laboratory_, tools.mailbox, jobs_} {
@@ -61,6 +64,7 @@ void ReplayLoop::handle(Mail& mail) {
                                  SimulationLoop::handle(mail);
                              }
                          },
+                         [this](EndReplay& ended) { end(ended); },
                          [&](SessionEnded& ended) {
                              forget(ended.session);
                              SimulationLoop::handle(mail);
@@ -93,8 +97,8 @@ void ReplayLoop::after_tick(simulation::Entry& entry) {
     }
 }
 
-std::string ReplayLoop::user_of(const simulation::Entry& entry) const {
-    const ShownReplays::Owner* owner = shown_.owner_of(entry.name);
+std::string ReplayLoop::user_of(const std::string& world) const {
+    const ShownReplays::Owner* owner = shown_.owner_of(world);
     return owner != nullptr ? owner->user : std::string{};
 }
 
@@ -124,15 +128,6 @@ bool ReplayLoop::answer(const ReplayMail& mail) {
 }
 
 void ReplayLoop::open(const ReplayMail& mail, const OpenReplay& request) {
-    if (shown_.names(mail.session).size() + seeks_.opening_count(mail.session) >= replays_max) {
-        return outputs_.reply(ReplayDone{mail, no_room("this session has " + std::to_string(replays_max) +
-                                                       " replays open already: close one first")});
-    }
-    if (shown_.names().size() + seeks_.opening_count() >= replays_of_all_max) {
-        return outputs_.reply(
-            ReplayDone{mail, no_room("all clients together have " + std::to_string(replays_of_all_max) +
-                                     " replays open already: try again when one of them is closed")});
-    }
     seeks_.begin({.purpose = {mail}, .run = mail.run->run, .to = request.at, .until = mail.run->until});
 }
 
@@ -163,6 +158,17 @@ bool ReplayLoop::close(const ReplayMail& mail, const CloseReplay& request) {
     outputs_.reply(ReplayDone{mail, request.world});
     report_memory(mail.session);
     return true;
+}
+
+void ReplayLoop::end(const EndReplay& mail) {
+    if (mail.name.empty()) {
+        seeks_.cancel_opening(mail.session, mail.request_id, replay_taken_back());
+    } else if (const ShownReplays::Owner* owner = shown_.owner_of(mail.name)) {
+        const std::uint64_t session = owner->session;
+        shown_.close(mail.name);
+        seeks_.cancel_of_replay(mail.name);
+        report_memory(session);
+    }
 }
 
 bool ReplayLoop::fork(const CommandMail& mail) {
@@ -231,7 +237,8 @@ void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const 
     outputs_.reply(ReplayDone{mail, name, protocol::to_proto(entry)});
     if (!moved.empty()) {
         pace_.show_change(name);
-        outputs_.events(laboratory_, {{name, entry.run_id, entry.world.moment().tick, simulation::GoalReached{}}});
+        outputs_.events(laboratory_, {{name, entry.run_id, entry.world.moment().tick, simulation::GoalReached{}}},
+                        outputs_.user_of);
     }
 }
 

@@ -22,13 +22,12 @@ namespace evod::runtime {
 
 class ReplayLoop final : public SimulationLoop {
   public:
-    static constexpr std::size_t replays_max = 4;         // maximum per client
-    static constexpr std::size_t replays_of_all_max = 64; // maximum of all clients together
-
     /// All references must outlive the loop.
     ///
     /// file  the replay of a run file that the server shows from its start.
-    ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file = {});
+    /// laboratory  the worlds that it has besides replays.
+    ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file = {},
+               simulation::Laboratory laboratory = {});
 
   private:
     void handle(Mail& mail) override;
@@ -37,7 +36,8 @@ class ReplayLoop final : public SimulationLoop {
     void advance_seek(std::uint64_t seek, const std::function<bool()>& stop) override { seeks_.advance(seek, stop); }
     void after_tick(simulation::Entry& entry) override;
     std::optional<Clock::time_point> refresh(Clock::time_point now) override { return shown_.refresh(now); }
-    std::string user_of(const simulation::Entry& entry) const override;
+    std::string user_of(const simulation::Entry& entry) const override { return user_of(entry.name); }
+    std::string user_of(const std::string& world) const;
 
     void find_run(const FindRun& mail);
     // The following functions return false if the request names a world that is not a replay.
@@ -45,6 +45,7 @@ class ReplayLoop final : public SimulationLoop {
     bool seek(const ReplayMail& mail, const Seek& request);
     bool close(const ReplayMail& mail, const CloseReplay& request);
     void open(const ReplayMail& mail, const OpenReplay& request);
+    void end(const EndReplay& mail);
     /// Begins the fork of a replay. Returns false if the command is something else.
     bool fork(const CommandMail& mail);
     /// Begins a seek to the generation that a fork begins with.

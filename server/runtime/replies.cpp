@@ -16,4 +16,10 @@ CommandDone refused(CommandDone done, base::Refusal why) {
     return done;
 }
 
+base::Refusal replay_taken_back() {
+    return refusal(base::RefusalCode::ResourceExhausted,
+                   "another user needs the place of this replay, and this user has the most replays: try again later",
+                   base::Reason::ReplaysMax);
+}
+
 } // namespace evod::runtime

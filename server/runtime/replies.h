@@ -59,6 +59,9 @@ struct ReplayMemory {
     std::size_t bytes = 0;
 };
 
+/// Why a replay was closed, or is not opened, for another user.
+base::Refusal replay_taken_back();
+
 struct RunFound {
     FindRun mail;
     base::Result<FoundRun> run; // a fork is answered at once if there is none

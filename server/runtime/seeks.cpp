@@ -52,6 +52,12 @@ base::Result<SeekResult> result_of(replay::SeekStart seek) {
                    "the run file contains this moment, but a new simulation of the run does not reach it");
 }
 
+base::Refusal superseded() {
+    return refusal(RefusalCode::FailedPrecondition,
+                   "superseded by a later seek: seek again if this moment is still wanted",
+                   base::Reason::SeekSuperseded);
+}
+
 } // namespace
 
 base::Result<FileReplay> FileReplay::open(const std::string& path, std::optional<std::uint64_t> generation,
@@ -89,17 +95,16 @@ std::uint64_t Seeks::Purpose::session() const {
 
 std::string Seeks::Purpose::user() const {
     const auto* mail = std::get_if<ReplayMail>(&request);
-    return mail != nullptr ? mail->user : run_file::user_of(std::get<CommandMail>(request).origin);
+    return mail != nullptr ? mail->user : std::get<CommandMail>(request).user;
 }
 
 void Seeks::begin(Request request) {
+    if (const std::string& moved = request.purpose.replay; !moved.empty()) {
+        cancel([&](const Running& other) { return !other.at && other.request.purpose.replay == moved; }, superseded());
+    }
     std::string user = request.purpose.user();
     const auto seek =
         seeks_.emplace(++last_number_, Running{.request = std::move(request), .user = std::move(user)}).first;
-    if (seeks_.size() > seeks_max) {
-        return end(seek, refusal(RefusalCode::ResourceExhausted, "too many seeks are in progress: try again later",
-                                 base::Reason::ReplaysMax));
-    }
     const Request& begun = seek->second.request;
     jobs_.add([&mailbox = mailbox_, number = seek->first, run = begun.run, to = begun.to,
                until = begun.until](const std::stop_token&) {
@@ -120,10 +125,7 @@ std::uint64_t Seeks::take(const SeekRead& mail) {
         return session;
     }
     if (const std::string& moved = seek->second.request.purpose.replay; !moved.empty()) {
-        cancel([&](const Running& other) { return other.at && other.request.purpose.replay == moved; },
-               refusal(RefusalCode::FailedPrecondition,
-                       "superseded by a later seek: seek again if this moment is still wanted",
-                       base::Reason::SeekSuperseded));
+        cancel([&](const Running& other) { return other.at && other.request.purpose.replay == moved; }, superseded());
     }
     seek->second.at = *std::move(*mail.start);
     return session;
@@ -144,6 +146,16 @@ void Seeks::cancel(const std::function<bool(const Running&)>& is_wanted, const b
     }
 }
 
+void Seeks::cancel_opening(std::uint64_t session, std::uint64_t request_id, const base::Refusal& why) {
+    cancel(
+        [&](const Running& seek) {
+            const auto* mail = std::get_if<ReplayMail>(&seek.request.purpose.request);
+            return mail != nullptr && mail->session == session && mail->request_id == request_id &&
+                   seek.request.purpose.opens_replay();
+        },
+        why);
+}
+
 void Seeks::cancel_of_session(std::uint64_t session) {
     cancel([&](const Running& seek) { return seek.request.purpose.session() == session; },
            refusal(RefusalCode::NotFound, "the session that sent the request has ended"));
@@ -152,13 +164,6 @@ void Seeks::cancel_of_session(std::uint64_t session) {
 void Seeks::cancel_of_replay(const std::string& replay) {
     cancel([&](const Running& seek) { return seek.request.purpose.replay == replay; },
            refusal(RefusalCode::NotFound, "the replay has been closed: open it again", base::Reason::WorldNotFound));
-}
-
-std::size_t Seeks::opening_count(std::optional<std::uint64_t> session) const {
-    return static_cast<std::size_t>(std::ranges::count_if(seeks_, [&](const auto& item) {
-        const Purpose& purpose = item.second.request.purpose;
-        return purpose.opens_replay() && (!session || purpose.session() == *session);
-    }));
 }
 
 std::size_t Seeks::held_bytes(std::uint64_t session) const {

@@ -4,7 +4,8 @@
 //   begin → read the file → simulate up to the moment → take_ended
 //
 // Owner        the loop of the replays, on its thread. A job queue reads the files.
-// Full         above seeks_max seeks, a new one is refused.
+// Full         the places of replays (network/replay_places.h) bound the number of seeks: of the seeks that move a replay, one is
+//              read and one simulates.
 // Determinism  a seek reproduces a run bit for bit.
 #pragma once
 
@@ -40,8 +41,6 @@ struct FileReplay {
 
 class Seeks {
   public:
-    static constexpr std::size_t seeks_max = 64;
-
     /// What a seek is for: to open a replay, to move one, or to bring a world for a fork.
     struct Purpose {
         std::variant<ReplayMail, CommandMail> request; // a command is a fork
@@ -77,15 +76,13 @@ class Seeks {
     void begin(Request request);
     /// Handles the result of a job: the seek begins to simulate. Returns the session to which it belongs; 0: to none.
     std::uint64_t take(const SeekRead& mail);
+    /// Ends the seek that opens a replay for this request, if there is one.
+    void cancel_opening(std::uint64_t session, std::uint64_t request_id, const base::Refusal& why);
     /// Ends all seeks of a session.
     void cancel_of_session(std::uint64_t session);
     /// Ends all seeks that move a replay, because the replay is closed.
     void cancel_of_replay(const std::string& replay);
 
-    /// Returns the number of seeks that open a replay.
-    ///
-    /// session  counts only the seeks of this session; nullopt: all seeks.
-    std::size_t opening_count(std::optional<std::uint64_t> session = {}) const;
     /// All seeks, by number. Those whose file is being read cannot advance.
     std::map<std::uint64_t, Running>& all() { return seeks_; }
     bool under_way() const;

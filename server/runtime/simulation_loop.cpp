@@ -111,11 +111,11 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
         if (!queries_.allows(now) && !time_is_free) {
             return woken ? now : queries_.next_at();
         }
-        outputs_.reply(queries_.answer_next(laboratory_));
+        QueryDone done = queries_.answer_next(laboratory_);
+        const std::string user = done.mail.user;
+        outputs_.reply(std::move(done));
         const auto began = std::exchange(now, tools_.clock.now());
-        if (!time_is_free) {
-            queries_.spend(now - began);
-        }
+        queries_.spend(user, now - began, !time_is_free);
         if (tools_.mailbox.pending()) {
             poll_mailbox(); // commands do not wait for queries
             woken = true;

@@ -13,7 +13,7 @@ void Simulations::start(Start with) {
         replays_.thread = std::make_unique<SimulationThread>(
             SimulationThread::Options{.name = "simulation"}, replays_.mailbox,
             std::make_unique<ReplayLoop>(LoopTools{replays_.mailbox, replays_.demand, with.executor, with.clock},
-                                         std::move(with.outputs), std::move(with.file)));
+                                         std::move(with.outputs), std::move(with.file), std::move(with.laboratory)));
         return;
     }
     LoopOutputs of_replays = with.outputs;
@@ -56,7 +56,8 @@ bool Simulations::try_send(CommandMail mail) {
     if (fork != nullptr && !shows_file_ && simulation::is_replay_name(fork->world)) {
         // The replay is forked as it is when the command comes, so the command goes to its thread.
         ForkComing coming{fork->name, !fork->at_generation};
-        if (!replays_.mailbox.try_push(std::move(mail))) {
+        const std::string user = mail.user;
+        if (!replays_.mailbox.try_push(std::move(mail), user)) {
             return false;
         }
         live_.mailbox.push(std::move(coming));
@@ -71,10 +72,12 @@ bool Simulations::try_send(CommandMail mail) {
             }
         },
         mail.command);
-    return mailbox_of(world).try_push(std::move(mail));
+    const std::string user = mail.user;
+    return mailbox_of(world).try_push(std::move(mail), user);
 }
 
 bool Simulations::try_send(ReplayMail mail) {
+    const std::string user = mail.user;
     const std::string world = std::visit([](const auto& request) { return request.world; }, mail.request);
     std::string with_run;
     if (std::holds_alternative<OpenReplay>(mail.request)) {
@@ -82,10 +85,10 @@ bool Simulations::try_send(ReplayMail mail) {
     } else if (std::holds_alternative<Seek>(mail.request) && simulation::is_replay_name(world)) {
         with_run = simulation::original_of(world); // its run may have grown
     } else {
-        return mailbox_of(world).try_push(std::move(mail));
+        return mailbox_of(world).try_push(std::move(mail), user);
     }
     const std::uint64_t session = mail.session;
-    if (!mailbox_of(with_run).try_push(FindRun{with_run, session, std::move(mail)})) {
+    if (!mailbox_of(with_run).try_push(FindRun{with_run, session, std::move(mail)}, user)) {
         return false;
     }
     ++finding_[session];

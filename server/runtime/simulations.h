@@ -39,7 +39,7 @@ class Simulations {
         base::Executor& executor; // for the live worlds; must outlive this object
         Clock& clock;             // must outlive this object
         LoopOutputs outputs;
-        simulation::Laboratory laboratory;
+        simulation::Laboratory laboratory;       // without the replays
         recording::Recorder* recorder = nullptr; // nullptr: runs are not stored
         std::optional<FileReplay> file = {};     // set if shows_file
     };
@@ -55,6 +55,8 @@ class Simulations {
     /// Sends a request for a replay. Unlike a command, it may need the run of a live world first. Returns false if the
     /// mailbox is full.
     bool try_send(ReplayMail mail);
+    /// Ends a replay that has lost its place, also one that is being opened.
+    void end_replay(EndReplay mail) { replays_.mailbox.push(std::move(mail)); }
     /// Sets which worlds are streamed, and whether any session is subscribed to events.
     void set_demand(WorldDemands worlds, bool events_wanted);
     bool events_wanted() const { return replays_.demand.events_wanted(); }
@@ -64,7 +66,8 @@ class Simulations {
     /// now: replies that wait for the disk come back with their receipts.
     std::optional<Answer> pass_on(Reply reply);
 
-    Mailbox::FillLevel fill() const { return shows_file_ ? replays_.mailbox.fill() : live_.mailbox.fill(); }
+    /// The places in the mailbox of the live worlds, by user.
+    base::Quota mailbox_places() const { return (shows_file_ ? replays_ : live_).mailbox.places(); }
     /// Calls `use` with the name and the handle of each running thread. Must not be called after stop().
     void for_each_thread(const std::function<void(const char* name, pthread_t)>& use);
 

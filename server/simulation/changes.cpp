@@ -4,7 +4,7 @@
 
 namespace evod::simulation {
 
-void Changes::add(std::uint64_t generation, std::string by, const parameters::RequestedParameters& before,
+void Changes::add(std::uint64_t generation, base::Actor by, const parameters::RequestedParameters& before,
                   const parameters::RequestedParameters& after) {
     Change change{.generation = generation, .by = std::move(by), .values = {}};
     for (const parameters::ParameterDescription* parameter :

@@ -5,6 +5,7 @@
 // Threads      none of its own.
 #pragma once
 
+#include "server/base/actor.h"
 #include "server/parameters/parameters.h"
 
 #include <cstdint>
@@ -22,7 +23,7 @@ struct ChangedValue {
 
 struct Change {
     std::uint64_t generation = 0; // the generation of the change; between two generations, the next one
-    std::string by;               // the client that made or planned the change; empty: the schedule
+    base::Actor by;               // the client that made or planned the change, or the schedule
     std::vector<ChangedValue> values;
     friend bool operator==(const Change&, const Change&) = default;
 };
@@ -34,7 +35,7 @@ class Changes {
 
     /// Adds the requested parameters that differ. Ignores parameters that change only with a reset, because a reset
     /// begins another run.
-    void add(std::uint64_t generation, std::string by, const parameters::RequestedParameters& before,
+    void add(std::uint64_t generation, base::Actor by, const parameters::RequestedParameters& before,
              const parameters::RequestedParameters& after);
     void clear() { *this = {}; }
 

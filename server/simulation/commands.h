@@ -3,6 +3,7 @@
 // Each command names its world. The protocol layer has already replaced an empty name by the name of a world.
 #pragma once
 
+#include "server/base/actor.h"
 #include "server/base/random.h"
 #include "server/evolution/chromosome.h"
 #include "server/parameters/parameters.h"
@@ -78,7 +79,7 @@ struct SetParameters {
     bool dry_run = false;
     std::optional<std::uint64_t> expected_revision;
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when to apply the change; nullopt: at once
-    std::string by = {};                                        // the author's name as other clients see it
+    base::Actor by = {};                                        // the author
 };
 /// Cancels a planned change.
 struct CancelChange {

@@ -37,7 +37,7 @@ struct RunTerminated {
 /// A planned or scheduled change was applied.
 struct ParametersChanged {
     std::uint64_t planned = 0;      // PlannedChange::id; 0: the schedule of the experiment
-    std::string by;                 // author of the plan; empty for the schedule
+    base::Actor by;                 // author of the plan, or the schedule
     std::vector<std::string> names; // names of the assigned parameters
     std::uint64_t revision;
 };
@@ -45,7 +45,7 @@ struct ParametersChanged {
 /// moment.
 struct ChangeDropped {
     std::uint64_t planned = 0;
-    std::string by;                 // as in ParametersChanged
+    base::Actor by;                 // as in ParametersChanged
     std::vector<std::string> names; // names of the parameters that the change would have set
     std::vector<base::Violation> violations;
 };

@@ -302,14 +302,14 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
     }
     if (is_full()) {
         return refusal(RefusalCode::ResourceExhausted,
-                       "there are " + std::to_string(worlds_max) + " worlds already: delete one first",
+                       "there are " + std::to_string(worlds_max_) + " worlds already: delete one first",
                        base::Reason::WorldsMax);
     }
     return std::nullopt;
 }
 
 bool Laboratory::is_full() const {
-    return world_count() >= worlds_max;
+    return world_count() >= worlds_max_;
 }
 
 template <class C>

@@ -20,7 +20,7 @@
 
 namespace evod::simulation {
 
-constexpr std::size_t worlds_max = 64;
+constexpr std::size_t worlds_max_by_default = 64;
 
 enum class RunState { Waiting, Running, Paused, Terminated };
 
@@ -175,7 +175,9 @@ class Laboratory {
     /// Returns the damaged world with that name, with the same meaning of an empty name; nullptr if there is none.
     const DamagedWorld* find_damaged(std::string_view name) const;
 
-    /// Returns whether the laboratory has worlds_max worlds, not counting replays whose original world is in it.
+    /// Sets the number of worlds from which on none can be created.
+    void set_worlds_max(std::size_t worlds_max) { worlds_max_ = worlds_max; }
+    /// Returns whether the laboratory has that many worlds, not counting replays whose original world is in it.
     bool is_full() const;
 
     /// The worlds, in order of creation, without damaged worlds.
@@ -218,6 +220,7 @@ class Laboratory {
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<DamagedWorld> damaged_;
     std::vector<Event> events_;
+    std::size_t worlds_max_ = worlds_max_by_default;
     std::optional<Storage> storage_;
     IslandsMaker* maker_ = nullptr; // nullptr: all islands are in this process
     std::uint64_t leases_granted_ =

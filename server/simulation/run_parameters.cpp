@@ -16,7 +16,7 @@ void RunParameters::become_fork() {
 }
 
 void RunParameters::request(const parameters::RequestedParameters& requested, std::uint64_t generation,
-                            const std::string& by) {
+                            const base::Actor& by) {
     changes_.add(generation, by, set_.requested, requested);
     set_ = parameters::after_request(set_, requested);
 }

@@ -44,7 +44,7 @@ class RunParameters {
     /// Sets the requested parameters.
     ///
     /// generation  in which the change is counted.
-    void request(const parameters::RequestedParameters& requested, std::uint64_t generation, const std::string& by);
+    void request(const parameters::RequestedParameters& requested, std::uint64_t generation, const base::Actor& by);
     /// Makes the requested values active that take effect at a tick.
     void begin_tick() { set_.active = parameters::taking_effect(set_.active, set_.requested, base::Effect::NextTick); }
     /// Returns the parameters that will be active in the tick after `now`.

@@ -135,7 +135,7 @@ class World {
     /// time that its Effect states.
     ///
     /// by  the client that requested them
-    void request_parameters(const parameters::RequestedParameters& requested, const std::string& by = {}) {
+    void request_parameters(const parameters::RequestedParameters& requested, const base::Actor& by = {}) {
         parameters_.request(requested, generation_of_changes(), by);
     }
 

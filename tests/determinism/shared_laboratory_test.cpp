@@ -97,7 +97,10 @@ class Draws {
         return command;
     }
     Command change(const std::string& world, const World& there) {
-        SetParameters command{.world = world, .assignments = {}, .expected_revision = {}, .by = "user"};
+        SetParameters command{.world = world,
+                              .assignments = {},
+                              .expected_revision = {},
+                              .by = base::client_actor("user", "evoctl", "127.0.0.1:5000")};
         command.assignments.push_back(below(2) == 0
                                           ? parameters::Assignment{"health_loss_per_s", number(0, 120)}
                                           : parameters::Assignment{"population_size", std::uint32_t{4 + below(12)}});

@@ -87,11 +87,12 @@ struct Place {
         (*file)->begin();
         v1::Request request;
         request.mutable_pause();
-        (*file)->write(run_file::JournalEntry{.number = 1,
-                                              .tick = identity.first_tick,
-                                              .origin = {"client", "key", 1, request.SerializeAsString()},
-                                              .answer = "answer",
-                                              .control = {}});
+        (*file)->write(run_file::JournalEntry{
+            .number = 1,
+            .tick = identity.first_tick,
+            .origin = {base::client_actor("", "client", "::1:5000"), "key", 1, request.SerializeAsString()},
+            .answer = "answer",
+            .control = {}});
         while (world.moment().generation < identity.first_generation + 2) {
             const std::uint64_t generation = world.moment().generation;
             world.advance_tick(executor);
@@ -260,8 +261,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (const auto file = run_file::RunFile::open_read_only(place.path)) {
         require(!foreign);
         (void)check(**file);
-        (void)(*file)->generations().history((*file)->generations().last() + 1,
-                                             simulation::history_generations_kept);
+        (void)(*file)->generations().history((*file)->generations().last() + 1, simulation::history_generations_kept);
         (void)(*file)->journal().read((*file)->contents().journal_entries);
     }
     for (const char* what : {"generations", "organisms", "events"}) {

@@ -107,6 +107,7 @@ WatchedServer::WatchedServer()
                   sessions_,
                   streams_,
                   host_,
+                  network::LimitOptions{}.replays_max,
                   [this] { boost::asio::post(context_, [this] { go_away(); }); },
                   [] { return v1::Metrics{}; }}
     , loop_{{mailbox_, simulations_.part_of("").demand, executor_, clock()},
@@ -172,7 +173,7 @@ void WatchedServer::watch_mail() {
     for (runtime::Mail& mail : waiting) {
         if (auto* command = std::get_if<runtime::CommandMail>(&mail)) {
             const run_file::Origin& origin = command->origin;
-            require(carried_out_.emplace(run_file::user_of(origin), origin.client_key, origin.request_id).second);
+            require(carried_out_.emplace(origin.by.user, origin.client_key, origin.request_id).second);
             if (too_large(command->command)) {
                 const base::Result<simulation::Applied> refused =
                     base::refusal(base::RefusalCode::ResourceExhausted, "the world is too large");

@@ -42,7 +42,7 @@ std::string text_of(const std::vector<parameters::PlannedChange>& planned) {
     std::string text;
     for (const parameters::PlannedChange& change : planned) {
         text += "[" + std::to_string(change.id) + " at generation " + text_of(change.at.generation) + ", tick " +
-                text_of(change.at.tick) + " by " + change.by + ":" + text_of(change.assignments) + "]";
+                text_of(change.at.tick) + " by " + to_text(change.by) + ":" + text_of(change.assignments) + "]";
     }
     return text;
 }
@@ -50,7 +50,7 @@ std::string text_of(const std::vector<parameters::PlannedChange>& planned) {
 std::string text_of(const std::deque<simulation::Change>& changes) {
     std::string text;
     for (const simulation::Change& change : changes) {
-        text += "[generation " + std::to_string(change.generation) + " by " + change.by + ":";
+        text += "[generation " + std::to_string(change.generation) + " by " + to_text(change.by) + ":";
         for (const simulation::ChangedValue& value : change.values) {
             text +=
                 " " + value.name + " " + parameters::to_text(value.before) + "->" + parameters::to_text(value.after);

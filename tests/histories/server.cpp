@@ -37,8 +37,7 @@ Server::Server(std::unique_ptr<replay::Archive> archive, std::chrono::microsecon
     }
     loops_.emplace(
         executor, clock_, [this](runtime::Answer answer) { on_answer(std::move(answer)); },
-        runtime::LoopOutputs{.events = [](const simulation::Laboratory&, std::vector<simulation::Event>) {},
-                             .snapshot = [](runtime::SnapshotPtr) {}},
+        runtime::LoopOutputs{.events = [](auto&&...) {}, .snapshot = [](runtime::SnapshotPtr) {}},
         std::move(laboratory), &archive_->recorder());
     archive_->recorder().when_changed([this] { loops_->simulations.mailbox_of("").wake(); });
     loops_->live.poll_mailbox();
@@ -69,7 +68,7 @@ void Server::send(const std::vector<SentCommand>& commands) {
         answers_[sent.request.request_id()] = std::nullopt;
         loops_->simulations.mailbox_of("").push(
             runtime::CommandMail{.command = sent.command,
-                                 .origin = {.client = client,
+                                 .origin = {.by = client,
                                             .client_key = sent.request.client_key(),
                                             .request_id = sent.request.request_id(),
                                             .request = sent.request.SerializeAsString()},

@@ -28,7 +28,7 @@ struct SentCommand {
 
 class Server {
   public:
-    static constexpr const char* client = "alice: test"; // who sends the commands
+    static inline const base::Actor client = base::client_actor("alice", "test", "127.0.0.1:5000"); // the sender
 
     /// tick_takes  how long a tick seems to take: long ticks cause checkpoints.
     /// leader      shares the worlds with other processes; nullptr: they are not shared.

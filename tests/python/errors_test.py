@@ -13,7 +13,7 @@ KIN = {
     "ResourceExhausted": RuntimeError, "FailedPrecondition": RuntimeError, "Aborted": RuntimeError,
     "Unimplemented": NotImplementedError, "Unavailable": ConnectionError, "NoConnection": ConnectionError,
     "Unauthenticated": PermissionError, "Timeout": TimeoutError, "DamagedData": ValueError, "FileNotFound": FileNotFoundError,
-    "MissingPackage": ImportError, "ProgramFailed": RuntimeError,
+    "MissingPackage": ImportError, "ProgramFailed": RuntimeError, "AnswerExpired": RuntimeError,
 }  # fmt: skip
 
 
@@ -28,6 +28,12 @@ class Errors(unittest.TestCase):
             self.assertIn(f"── {name} ", errors.__doc__)
             error = kind("what happened", [errors.Violation("seed", "0", "1")])
             self.assertEqual(str(error), "what happened\n  seed: got 1, allowed 0")
+
+    def test_no_message_controls_the_terminal(self):
+        for text in "w\x1b[2J", "w\x9b31m", "w\u202e":
+            error = errors.NotFound(f"there is no world 'v'; the worlds are: {text}", [errors.Violation("a", text, text)])
+            self.assertNotRegex(str(error) + repr(error.args) + str(errors.copy_of(error)), "[\x1b\x9b\u202e]")
+        self.assertEqual(str(errors.ProgramFailed("two\nlines")), "two\nlines")
 
     def test_every_code_has_a_class(self):
         for code in c.Code.values():

@@ -4,6 +4,7 @@ import re
 import subprocess
 import tempfile
 import unittest
+import warnings
 
 import evod
 from evod import page_link
@@ -20,6 +21,14 @@ class Form(unittest.TestCase):
                                           ({}, Endpoint("::1"), True, "https://[::1]:7745/"),
                                           ({"page_host": "192.0.2.1"}, Endpoint("lab"), False, "http://192.0.2.1:7745/")):
             self.assertEqual(page_link.page_of(session_pb2.Welcome(page_port=7745, **fields), server, tls), page)
+
+    def test_another_host_causes_a_warning(self):
+        with self.assertWarnsRegex(UserWarning, "at another host: 192.0.2.1"):
+            page_link.warn_of_other_host(session_pb2.Welcome(page_port=7745, page_host="192.0.2.1"), Endpoint("lab"))
+        with warnings.catch_warnings(record=True) as seen:
+            for host in "", "lab":
+                page_link.warn_of_other_host(session_pb2.Welcome(page_port=7745, page_host=host), Endpoint("lab"))
+        self.assertEqual(seen, [])
 
     def test_names_of_the_server_cannot_leave_the_url(self):
         for host in "\x1b]8;;x\x07", "a/b", "a@b", "\u202elab":

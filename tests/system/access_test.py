@@ -1,7 +1,9 @@
 """Tokens, roles and TLS over real sockets. EVOD and EVOCTL name the programs, MESSAGES
 the folder of the message classes."""
+import contextlib
 import csv
 import io
+import json
 import os
 import pathlib
 import pty
@@ -125,22 +127,35 @@ class Roles(Access):
             other.call(client_key="k", request_id=2**63, pause=c.Pause())
             self.assertEqual(admin.call(**sent), first)
             admin.call(client_key="k", request_id=3 if restarted else 2, pause=c.Pause())
-            for client, clients in ((viewer, {"ada", "bob"}), (admin, {f"ada: plain {admin.socket.getsockname()[0]}"})):
+            # Those who see programs and addresses in events and in the history see them here, too.
+            whole = {(user, "plain", "127.0.0.1") for user in ("ada", "bob")}
+            for client, clients in ((viewer, {("ada", "", ""), ("bob", "", "")}), (other, whole), (admin, whole)):
                 exported = c.ExportRun(table=c.RUN_TABLE_EVENTS, format=c.TEXT_FORMAT_CSV)
                 table = list(csv.DictReader(io.StringIO(plain.until(
                     lambda: (lambda part: part.text if part.last else None)(client.call(export_run=exported).export_part),
                     "the whole table").decode())))
                 self.assertNotIn("client_key", table[0])
                 self.assertNotIn('"k"', "".join(row["request"] for row in table))
-                shown = {row["client"].rsplit(":", 1)[0] for row in table if row["client"]}
-                self.assertTrue(clients <= shown, (clients, shown))
-                if client is viewer:
-                    self.assertEqual(shown, clients)
+                shown = {(row["user"], row["program"], row["address"].rsplit(":", 1)[0])
+                         for row in table if row["sender"] == "client"}
+                self.assertEqual(shown, clients)
             for client in (admin, other, viewer):
                 client.socket.close()
             if not restarted:
                 server.kill()
                 server = self.serve("--require-token")
+
+    def test_a_viewer_evicts_no_answer_of_another_user(self):
+        ada, eve = self.token("ada", ADMIN), self.token("eve", VIEWER)
+        server = self.serve("--require-token", "--durability", "relaxed")
+        admin, viewer = self.come(server, ada), self.come(server, eve)
+        sent = dict(client_key="k", request_id=1, run=c.Run(generations=1))
+        first = admin.call(**sent)
+        admin.call(pause=c.Pause())
+        past_world = viewer.call(open_replay=c.OpenReplay()).world.name
+        for number in range(2 * admin.welcome.limits.client_keys_max):
+            viewer.call(client_key=f"key {number}", pause=c.Pause(world=past_world))
+        self.assertEqual(admin.call(**sent), first)
 
     def test_a_viewer_changes_nothing(self):
         secret = self.token("anna", VIEWER)
@@ -244,6 +259,28 @@ class Tokens(Access):
         client = self.come(server, secret)
         self.assertEqual((client.welcome.role, client.welcome.user), (VIEWER, "anna"))
         self.assertEqual(self.come(server, "evod_nonsense").refusal.code, UNAUTHENTICATED)
+
+    def test_a_client_may_have_any_name(self):
+        server = self.serve()
+        watches = self.come(server)
+        watches.call(subscribe_events=c.SubscribeEvents())
+        names = ("ada:", "a: b", ": ", "evod", "ada: evod", "127.0.0.1:1", " ", "a:b:")
+        for name in names:
+            client = plain.Client(server, hello=False)
+            self.addCleanup(client.socket.close)
+            client.hello(client_name=name)
+            client.control()
+            client.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
+            by = watches.next_event("parameters_changed").parameters_changed.by
+            self.assertEqual((by.kind, by.user, by.client), (w.ACTOR_KIND_CLIENT, "", name))
+            client.call(client_key="again", request_id=1, pause=c.Pause())
+            client.call(client_key="again", request_id=1, pause=c.Pause())
+        exported = c.ExportRun(table=c.RUN_TABLE_EVENTS, format=c.TEXT_FORMAT_JSON_LINES)
+        table = plain.until(lambda: (lambda part: part.text if part.last else None)(
+            watches.call(export_run=exported).export_part), "the whole table").decode().splitlines()
+        rows = [row for row in map(json.loads, table) if row["kind"] == "set_parameters"]
+        self.assertEqual([(row["sender"], row["user"], row["program"]) for row in rows],
+                         [("client", "", name) for name in names])
 
     def test_on_other_interfaces_a_token_must_exist(self):
         done = waiting.run([EVOD, "--bind", "0.0.0.0", "--port", "0", "--data", self.folder], capture_output=True, text=True)
@@ -418,6 +455,26 @@ class Tokens(Access):
                     pass
             return "earlier connections were not logged" in server.output()
         plain.until(another, "how many were left out")
+
+    def test_a_user_does_not_fill_the_log(self):
+        eve, ada = self.token("eve", VIEWER), self.token("ada", VIEWER)
+        server = self.serve("--require-token")
+
+        def end_badly(secret):
+            with contextlib.closing(Client(server, secret).socket) as connection:
+                connection.sendall(b"no frame")
+                while connection.recv(1000):
+                    pass
+        for _ in range(200):
+            end_badly(eve)
+        self.assertLess(len(re.findall("eve: .* closed: ", server.output())), 150)
+        end_badly(ada)
+        plain.until(lambda: re.search("ada: .* closed: ", server.output()), "the line about another user")
+
+        def left_out():
+            end_badly(eve)
+            return "earlier lines about this user were not logged" in server.output()
+        plain.until(left_out, "how many were left out")
 
     def test_local_clients_are_logged_at_level_debug(self):
         for options, logged in (((), False), (("--log-level", "debug"), True)):

@@ -162,54 +162,41 @@ class Frames(Case):
 
 
 class Sessions(Case):
-    def test_sessions_and_of_one_address(self):
-        server = self.serve("--sessions-max", "6", "--sessions-per-address-max", "4")
+    def test_an_address_has_half_of_the_sessions(self):
+        server = self.serve("--sessions-max", "8")
         here = [self.come(server) for _ in range(4)]
-        self.assertEqual(here[0].welcome.limits.sessions_max, 6)
-        self.assertEqual(here[0].welcome.limits.sessions_per_address_max, 4)
+        self.assertEqual(here[0].welcome.limits.sessions_max, 8)
         self.assertEqual(here[0].call(describe=c.Describe()).description.limits, here[0].welcome.limits)
-        with self.meets(here[0], "sessions_per_address_max"):
+        with self.meets(here[0], "sessions_max"):
             refused = self.come(server)
             self.assertEqual(refused.refusal.code, EXHAUSTED)
-            self.assertIn("4 sessions from this address", refused.refusal.message)
+            self.assertIn("there are 4 sessions of this user, or from this address", refused.refusal.message)
             refused.assert_closed()
-        for _ in range(2):
-            self.assertIsNotNone(self.come(server, come_from="127.0.0.2").welcome)
-        with self.meets(here[0], "sessions_max"):
-            refused = self.come(server, come_from="127.0.0.3")
-            self.assertEqual(refused.refusal.code, EXHAUSTED)
-            self.assertIn("6 sessions", refused.refusal.message)
-            refused.assert_closed()
-        for client in here:
+        there = [self.come(server, come_from="127.0.0.2") for _ in range(4)]
+        self.assertIsNotNone(self.come(server, come_from="127.0.0.3").welcome)  # here loses its oldest session
+        self.closed_with_goodbye(here[0], EXHAUSTED, "another user needs the place")
+        for client in (*here[1:], *there):
             client.call(list_worlds=c.ListWorlds())
         here[3].socket.close()
         plain.until(lambda: self.come(server, come_from="127.0.0.3").welcome, "a place is free again")
 
     def test_silent_connections_make_room_for_new_ones(self):
         def make_room(_):
-            with self.served_once("--sessions-max", "6", "--sessions-per-address-max", "4") as server:
+            with self.served_once("--sessions-max", "6") as server:
                 self.make_room(server)
         waiting.quicker_than(HELLO_S, make_room)
 
     def make_room(self, server):
         first = self.come(server)
-        silent = [self.enterContext(plain.Client(server, hello=False, come_from=f"127.0.0.{2 + i // 4}"))
-                  for i in range(5)]
-        with self.meets(first, "sessions_max"):
-            newcomer = self.come(server, come_from="127.0.0.4")
+        half = (first.welcome.limits.newcomers_max + 1) // 2
+        silent = [self.enterContext(plain.Client(server, hello=False, come_from="127.0.0.2")) for _ in range(half)]
+        with self.meets(first, "newcomers_max"):
+            newcomer = self.come(server, come_from="127.0.0.2")
             self.assertEqual(newcomer.welcome.limits.sessions_max, 6)
         self.closed_with_goodbye(silent[0], EXHAUSTED, "no Hello was received")
-        with self.meets(first, "sessions_max"):  # both limits are reached; the address has no silent session
-            others = [self.come(server, come_from="127.0.0.4") for _ in range(3)]
-        self.assertTrue(all(other.welcome.instance_id for other in others))
-        for one in silent[1:4]:
-            self.closed_with_goodbye(one, EXHAUSTED, "no Hello was received")
-        with self.meets(first, "sessions_per_address_max"):
-            refused = self.come(server, come_from="127.0.0.4")
-            self.assertIn("4 sessions from this address", refused.refusal.message)
-        silent[4].hello()  # only the first was closed
-        self.assertTrue(silent[4].control().HasField("welcome"))
-        for client in (first, newcomer, *others):
+        silent[1].hello()  # only the first was closed
+        self.assertTrue(silent[1].control().HasField("welcome"))
+        for client in (first, newcomer):
             client.call(list_worlds=c.ListWorlds())
 
     def test_connections_without_hello_block_no_client(self):
@@ -236,7 +223,7 @@ class Sessions(Case):
         self.assertNotIn("unable to open", server.output())
 
     def test_a_thousand_idle_sessions_take_little_memory(self):
-        server = self.serve("--sessions-max", "1100", "--sessions-per-address-max", "1100")
+        server = self.serve("--sessions-max", "2200")
         first = self.come(server)
         before = memory_kib(server)
         idle = []
@@ -287,7 +274,7 @@ class Requests(Case):
             self.assertEqual(client.response(asked.pop(0)).status.code, OK)
             asked.append(client.ask(describe=c.Describe()))
 
-    def test_the_mailbox_is_bounded(self):
+    def test_an_address_has_half_of_the_mailbox(self):
         server = self.serve()
         admin = self.come(server)
         limits = admin.welcome.limits
@@ -305,7 +292,7 @@ class Requests(Case):
                          for i in range(limits.requests_in_flight_max)]
             self.assertLessEqual(set(codes), {OK, EXHAUSTED})
             # the command to the large world may still be in the mailbox
-            self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max - 1)
+            self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max // 2 - 1)
             return EXHAUSTED in codes
         with self.meets(admin, "mailbox_commands_max"):
             plain.until(crowd, "one too many")
@@ -418,14 +405,15 @@ class Requests(Case):
 
 class Worlds(Case):
     def test_worlds_and_looks_at_the_past(self):
-        server = self.serve()
+        server = self.serve("--replays-max", "6", "--worlds-max", "9")
         client, other = self.come(server), self.come(server)
         limits = client.welcome.limits
-        for _ in range(limits.replays_max):
+        self.assertEqual((limits.replays_max, limits.worlds_max), (6, 9))
+        for _ in range(limits.replays_max // 2):
             client.call(open_replay=c.OpenReplay(world="default"))
         with self.meets(other, "replays_max"):
             client.call(EXHAUSTED, open_replay=c.OpenReplay(world="default"))
-        other.call(open_replay=c.OpenReplay(world="default"))
+        self.come(server, come_from="127.0.0.2").call(open_replay=c.OpenReplay(world="default"))
         small = plain.assignments(population_size=1, food_count=0, poison_count=0)
         while len(client.call(list_worlds=c.ListWorlds()).worlds.worlds) < limits.worlds_max:
             client.call(create_world=c.CreateWorld(name=f"w{client.request_id}", parameters=small))
@@ -557,7 +545,7 @@ class Times(Case):
         certificates = pathlib.Path(self.folder) / "certificates"
         access.Tls.pair(self, "certificates")
         self.assertTrue(certificates.exists())
-        server = self.serve("--sessions-per-address-max", "250")
+        server = self.serve("--sessions-max", "500")
         encrypted = access.Access.server(self, "--keep-nothing", *access.Tls.files(self))
         other = self.come(server)
         limits = other.welcome.limits

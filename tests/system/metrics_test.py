@@ -394,6 +394,26 @@ class Http(Case):
             self.assertTrue(answer.endswith(b"\n") and b"\r\n\r\n" in answer)
             self.wait_well(server)
 
+    def test_no_body_is_read_as_a_request(self):
+        server = self.serve()
+        inner = b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n"
+        chunked = b"%x\r\n%s\r\n0\r\n\r\n" % (len(inner), inner)
+        for fields, body in (("Transfer-Encoding: identity", inner), ("Transfer-Encoding: xchunked", inner),
+                             ("Transfer-Encoding: chunked, identity", inner), ("Transfer-Encoding: chunked", chunked),
+                             ("transfer-encoding:\tchunked", chunked), ("Transfer-Encoding:", inner),
+                             ("Transfer-Encoding: gzip\r\nTransfer-Encoding: identity", inner),
+                             (f"Content-Length: {len(inner)}", inner), (f"Content-Length: {len(inner)}\r\nExpect: 100-continue", inner),
+                             (f"Content-Length: 0\r\nContent-Length: {len(inner)}", inner), (f"Content-Length: 0, {len(inner)}", inner),
+                             ("Content-Length: 0\r\nTransfer-Encoding: chunked", chunked)):
+            for path in ("/healthz", "/session", "/nowhere"):
+                with self.subTest(fields=fields, path=path):
+                    answer = read_all(self.raw(server, f"GET {path} HTTP/1.1\r\nHost: localhost\r\n{fields}\r\n\r\n".encode() + body))
+                    self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", answer, re.M), [b"400"])
+        # An empty body is none.
+        answer = read_all(self.raw(server, b"GET /nowhere HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\nExpect: 100-continue\r\n"
+                                           b"Connection: close\r\n\r\n"))
+        self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", answer, re.M), [b"404"])
+
     @contextlib.contextmanager
     def meets(self, server, limit, at_least=1):
         """The block, given the limit's value, reaches this limit so often."""

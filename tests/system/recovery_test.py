@@ -426,6 +426,22 @@ class Recovery(unittest.TestCase):
             self.assertEqual([x.value.real for x in there.parameters if x.name == "food_health"], [11.0])
         server.end()
 
+    def test_old_commands_of_an_ended_run_are_not_repeated(self):
+        server = self.serve("--seed", "5", "--durability", "relaxed")
+        with Client(server, "early") as early, Client(server, "k") as client:
+            self.assertEqual(early.call(1, run=c.Run(world="default", generations=1)).status.code, 0)
+            for number in range(1, 1003):
+                client.call(number, pause=c.Pause(world="default"))
+            client.call(1003, reset_world=c.ResetWorld(world="default"))
+        server.end()
+        server = self.serve()
+        with Client(server, "early") as early:
+            again = early.call(1, run=c.Run(world="default", generations=1)).status
+            self.assertEqual((again.code, again.reason), (9, c.REASON_REQUEST_TOO_OLD), again)
+            self.assertEqual(early.world().state, w.RUN_STATE_WAITING)
+            self.assertEqual(early.call(2, pause=c.Pause(world="default")).status.code, 0)
+        server.end()
+
     def test_only_the_same_experiment_is_continued(self):
         path = pathlib.Path(self.data) / "plate.json"
         path.write_text('{"population_size": 20, "seed": 4}')

@@ -292,8 +292,10 @@ class Export(Case):
                           "run_until_tick", "set_parameters", "pause", "run_until_tick"])
         self.assertEqual([int(row["number"]) for row in rows], list(range(1, 11)))
         self.assertEqual([int(row["tick"]) for row in rows], [0, 0, 0, 0, 130, 130, 130, 240, 240, 240])
-        self.assertEqual(rows[0]["client"], "evod")
-        self.assertIn("evoctl", rows[3]["client"])
+        parts = ("sender", "user", "program")
+        self.assertEqual([rows[0][part] for part in (*parts, "address")], ["server", "", "", ""])
+        self.assertEqual([rows[3][part] for part in parts], ["client", "", "evoctl"])
+        self.assertRegex(rows[3]["address"], r"^127\.0\.0\.1:\d+$")
         for row in rows:
             request = json.loads(row["request"])
             self.assertEqual(list(request), [row["kind"]], "and no client_key, by which another could send the next")

@@ -1,10 +1,11 @@
 """Rules of style that a program can check: plain words, braces, whole comment blocks, short test names, header pages, sizes,
-unit tests.
+names that Python defines twice or never uses, unit tests.
 
     tidy.py [ROOT]     prints every finding as PATH:LINE: what is wrong, and what to write instead
 
 Reads the files that git tracks below ROOT, by default this repository. Exit code 1 if there is a finding.
 """
+import ast
 import pathlib
 import re
 import subprocess
@@ -162,7 +163,46 @@ def large_source(path, text):
         yield path, 1, f"{lines} lines, allowed {SOURCE_LINES_MAX}: cut the source by its subjects"
 
 
-RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source)
+def bound_names(statement):
+    """The names that a statement of a module or a class binds: (name, whether it may replace an earlier one)."""
+    if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        decorators = {ast.unparse(decorator) for decorator in statement.decorator_list}
+        if not any(one.endswith("overload") for one in decorators):  # the implementation follows
+            yield statement.name, any(one.endswith((".setter", ".deleter", ".register")) for one in decorators)
+    elif isinstance(statement, ast.AnnAssign):
+        if isinstance(statement.target, ast.Name) and statement.value is not None:
+            yield statement.target.id, False
+    elif isinstance(statement, ast.Assign):
+        for target in statement.targets:
+            for node in ast.walk(target):
+                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+                    reads_itself = any(isinstance(one, ast.Name) and one.id == node.id for one in ast.walk(statement.value))
+                    yield node.id, reads_itself
+    elif isinstance(statement, (ast.Import, ast.ImportFrom)):
+        for imported in statement.names:
+            yield imported.asname or imported.name, False
+
+
+def python_names(path, text):
+    """Names that a module or a class of Python defines twice, and private names of a module that nothing uses."""
+    if path.suffix != ".py":
+        return
+    module = ast.parse(text)
+    bodies = [module, *(node for node in ast.walk(module) if isinstance(node, ast.ClassDef))]
+    for body in bodies:
+        seen = set()
+        for statement in body.body:
+            for name, again in bound_names(statement):
+                if name in seen and not again and name != "_":
+                    yield path, statement.lineno, f"`{name}` is defined twice: the first definition is never used"
+                seen.add(name)
+    for statement in module.body:
+        for name, _ in bound_names(statement):
+            if re.match(r"_[A-Za-z]", name) and len(re.findall(rf"\b{name}\b", text)) == 1:
+                yield path, statement.lineno, f"`{name}` is never used: remove it"
+
+
+RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source, python_names)
 
 # Sources without a unit test of their own, by folder → the tests that cover them. `*` is every source below the folder.
 UNIT_TESTED_ELSEWHERE = {

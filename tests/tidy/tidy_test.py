@@ -58,6 +58,15 @@ class Rules(unittest.TestCase):
         self.assertEqual(found(tidy.large_source, "server/a.cpp", "\n" * 700), [])
         self.assertEqual(found(tidy.large_source, "tests/a.cpp", "\n" * 701), [])
 
+    def test_python_names_are_defined_once_and_used(self):
+        for text, lines in (("A = 1\nA = 2\n", [2]), ("_A = 1\n", [1]), ("_A = 1\nprint(_A)\n", []), ("A = 1\nA = A + 1\n", []),
+                            ("def f(): pass\ndef g(): pass\ndef f(): pass\n", [3]), ("import a\nfrom b import a\n", [2]),
+                            ("class A:\n    def f(self): pass\n    def f(self): pass\n", [3]),
+                            ("class A:\n    @property\n    def f(self): pass\n    @f.setter\n    def f(self, x): pass\n", []),
+                            ("class A:\n    @overload\n    def f(self): ...\n    def f(self): pass\n", []),
+                            ("try:\n    import a\nexcept ImportError:\n    a = None\n", [])):
+            self.assertEqual(found(tidy.python_names, "a.py", text), lines, text)
+
     def test_sources_without_a_unit_test_are_found(self):
         def untested(tests, excepted=()):
             names = ["server/network/a.cpp", "server/network/a.h", *tests]

@@ -19,6 +19,7 @@ evod.lab, evod.experiments and evod.version are generated when the package is bu
 from evod.errors import (
     Aborted,
     AlreadyExists,
+    AnswerExpired,
     DamagedData,
     Error,
     FailedPrecondition,
@@ -80,7 +81,7 @@ from evod.version import __version__
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
 
 __all__ = [
-    "Aborted", "Actor", "AlreadyExists", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
+    "Aborted", "Actor", "AlreadyExists", "AnswerExpired", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
     "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
     "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics", "Generation",
     "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",

@@ -3,7 +3,8 @@
 The code that owns the socket calls opened(), received() and lost(), and sends the bytes that outgoing() returns. Callers
 pass requests and subscriptions to a Core, and find the answers, events and snapshots in Pending and Subscription. After a
 reconnect the core sends its Hello, subscribes again, and repeats every unanswered request with the same client_key and
-request_id. The repetition is idempotent, because the server has a reply cache: it applies each command once.
+request_id. The repetition is idempotent, because the server has a reply cache: it applies each command once. Requests that
+contain an id of their session fail with it: those about subscriptions, exports and replays.
 
 Threads      none of its own. Only one thread at a time may call a Core.
 Bounds       Requests beyond the server's limit are queued here. A subscription keeps the newest EVENTS_KEPT events and
@@ -38,6 +39,29 @@ _REPLAY_TIMEOUT_FACTOR = 20
 #: Requests that contain an id which is valid only in its session. They fail when the session ends, and are not repeated.
 _SESSION_REQUESTS = frozenset(("unsubscribe", "request_keyframe", "set_view", "continue_export"))
 
+#: A Goodbye with one of these codes ends the client: another session would end for the same reason.
+_FINAL_CODES = (
+    commands_pb2.CODE_UNAUTHENTICATED,
+    commands_pb2.CODE_PERMISSION_DENIED,
+    commands_pb2.CODE_INVALID_ARGUMENT,
+)
+
+
+def _replay_in(request: commands_pb2.Request) -> str:
+    """Returns the name of the replay that a request names as its world: "default@3"; "" if it names none.
+
+    A replay ends with its session. Another session may use the name for another replay.
+    """
+    kind = request.WhichOneof("kind")
+    world: str = getattr(getattr(request, kind), "world", "") if kind else ""
+    return world if "@" in world else ""
+
+
+def _replay_has_ended(replay: str) -> Error:
+    """Returns the error for a replay of an earlier session, as the server states it if it does not know the replay."""
+    return refusal(commands_pb2.Status(code=commands_pb2.CODE_NOT_FOUND, reason=commands_pb2.REASON_WORLD_NOT_FOUND,
+                                       message=f"the replay {replay} has ended with its session"))
+
 
 def _no_connection(error: Error) -> NoConnection:
     kind = Unauthenticated if error.code == commands_pb2.CODE_UNAUTHENTICATED else NoConnection
@@ -50,6 +74,7 @@ class Pending:
     def __init__(self, request: commands_pb2.Request, frame: bytes) -> None:
         self.request, self.frame = request, frame
         self.kind: str = request.WhichOneof("kind") or ""
+        self.ends_with_session = self.kind in _SESSION_REQUESTS or _replay_in(request) != ""
         self.sent = False  # whether it was sent in this session
         self.response: commands_pb2.Response | None = None
         self.error: Error | None = None
@@ -123,6 +148,7 @@ class Core:
         self.connected = False  # whether the server has sent its Welcome on the current connection
         self.failed: Error | None = None  # why reconnecting is pointless; None: the client may reconnect
         self.loss: Error | None = None  # why there is no session at present
+        self.retry_late = False  # the server is full: reconnect only after the longest wait
         self.damaged_snapshot_count = 0  # snapshots dropped because they could not be decoded
         self._outgoing = bytearray()
         self._reader = framing.FrameReader()
@@ -131,6 +157,8 @@ class Core:
         self._first: set[int] = set()  # ids of the requests to send before all other requests
         self._in_flight: set[int] = set()  # ids of unanswered requests of this session, even if no caller waits for them
         self._abandoned_replays: set[int] = set()  # ids of unanswered OpenReplay requests whose callers no longer wait
+        self._own_replays: set[str] = set()  # names of the replays that this session has opened
+        self._ended_replays: set[str] = set()  # names of the replays that earlier sessions have opened
         self._subscriptions: list[weakref.ref[Subscription]] = []
         self._of_server_id: dict[int, weakref.ref[Subscription]] = {}
         self._streams: dict[tuple[int, int], _StreamState] = {}  # keys: server_id and island
@@ -141,6 +169,7 @@ class Core:
         """Queues the Hello. Call it after connecting."""
         self._outgoing.clear()
         self._reader = framing.FrameReader()
+        self.retry_late = False
         self._send(self._hello)
 
     def received(self, data: bytes | bytearray | memoryview) -> None:
@@ -169,13 +198,16 @@ class Core:
         self._abandoned_replays.clear()
         self._of_server_id.clear()
         self._streams.clear()
+        self._ended_replays |= self._own_replays
+        self._own_replays.clear()
+        had_session = self.welcome is not None
         for subscription in self._live_subscriptions():
             subscription.server_id = subscription.pending = None
             if subscription.request.HasField("subscribe_snapshots"):
                 subscription.arrived.clear()  # the sequence numbers of the snapshots are not valid in another session
         for request_id, pending in list(self._pending.items()):
             subscribing = pending.kind.startswith("subscribe_")
-            if self.failed is not None or subscribing or pending.sent and pending.kind in _SESSION_REQUESTS:
+            if self.failed is not None or subscribing or had_session and pending.ends_with_session:
                 del self._pending[request_id]
                 self._first.discard(request_id)
                 pending.error = _no_connection(error)
@@ -197,16 +229,20 @@ class Core:
     def request(self, request: commands_pb2.Request, *, first: bool = False) -> Pending:
         """Queues a request, which is sent when there is a session. Sets its request_id and client_key.
 
-        Raises NoConnection if the client is closed or has failed, InvalidArgument if the request is longer than the server
-        allows.
+        Raises NoConnection if the client is closed or has failed, or if the request contains an id of a session and there is
+        none; NotFound if it names a replay of an earlier session; InvalidArgument if it is longer than the server allows.
         """
         if self.failed is not None:
             raise _no_connection(self.failed)
+        if (replay := _replay_in(request)) in self._ended_replays:
+            raise _replay_has_ended(replay)
+        if self.loss is not None and self.welcome is not None and (replay or request.WhichOneof("kind") in _SESSION_REQUESTS):
+            raise _no_connection(self.loss)
         request_id = self._last_request_id + 1
         request.request_id, request.client_key = request_id, self.client_key
         body = session_pb2.ClientMessage(request=request).SerializeToString()
-        limits = self.welcome.limits if self.welcome else None
-        limit = limits.control_frame_bytes_max if limits else 1 << 20
+        stated = self.welcome.limits.control_frame_bytes_max if self.welcome else 0
+        limit = stated or 1 << 20  # until the server has stated its limit
         if len(body) > limit:
             raise InvalidArgument(f"the request is {len(body)} bytes long, allowed at most {limit}")
         self._last_request_id = request_id
@@ -284,7 +320,8 @@ class Core:
             self._take_event(message.event)
         elif kind == "goodbye":
             error = refusal(message.goodbye.status)
-            if error.code == commands_pb2.CODE_UNAUTHENTICATED:
+            self.retry_late = error.code == commands_pb2.CODE_RESOURCE_EXHAUSTED
+            if error.code in _FINAL_CODES:
                 self.failed = _no_connection(error)
             raise _no_connection(error)
 
@@ -293,6 +330,7 @@ class Core:
             error = refusal(message.goodbye.status)
             refused = _no_connection(error)
             refused.message = f"the server at {self._server} refused this client: {error.message}"
+            self.retry_late = error.code == commands_pb2.CODE_RESOURCE_EXHAUSTED
             if error.code not in (commands_pb2.CODE_RESOURCE_EXHAUSTED, commands_pb2.CODE_UNAVAILABLE):
                 self.failed = refused
             raise refused
@@ -304,10 +342,11 @@ class Core:
                 f"{PROTOCOL_VERSION}: install the package of the server's version"
             )
             raise self.failed
-        self.welcome, self.connected, self.loss = message.welcome, True, None
-        # Subscriptions are sent first, so that subscribers receive the events that the other requests cause.
+        self.welcome, self.loss = message.welcome, None
+        # All subscriptions are sent first, so that subscribers receive the events that the other requests cause.
         for subscription in self._live_subscriptions():
             self._resubscribe(subscription)
+        self.connected = True
         self._send_waiting()
 
     def _take_response(self, response: commands_pb2.Response) -> None:
@@ -321,6 +360,9 @@ class Core:
         if pending is not None and pending.sent:
             del self._pending[response.request_id]
             pending.response = response
+            if pending.kind == "open_replay" and response.HasField("world"):
+                self._own_replays.add(response.world.name)
+                self._ended_replays.discard(response.world.name)
             if pending.kind.startswith("subscribe_"):
                 self._take_subscription(pending, response)
         self._send_waiting()
@@ -332,6 +374,10 @@ class Core:
         return (subscription for known in self._subscriptions if (subscription := known()) is not None)
 
     def _resubscribe(self, subscription: Subscription) -> None:
+        replay = _replay_in(subscription.request)
+        if replay in self._ended_replays or replay and subscription.sessions:
+            subscription.refused = _replay_has_ended(replay)
+            return
         request = commands_pb2.Request()
         request.CopyFrom(subscription.request)
         subscription.pending = self.request(request, first=True)

@@ -7,6 +7,7 @@
     ├── PermissionDenied     PermissionError        the role of this client does not allow the call
     ├── ResourceExhausted    RuntimeError           a limit of the server is reached
     ├── FailedPrecondition   RuntimeError           the call is not possible in the current state
+    │   └── AnswerExpired    RuntimeError           the server no longer has the answer; the command may have been applied
     ├── Aborted              RuntimeError           another client changed the state first
     ├── Unimplemented        NotImplementedError    the server does not support the call: it may be older than this package
     ├── Unavailable          ConnectionError        the server is shutting down or cannot write to its disk
@@ -65,9 +66,11 @@ class Error(Exception):
     _code: ClassVar[int | None] = None  # the code of a subclass
 
     def __init__(self, message: str, violations: Iterable[Violation] = (), code: int | None = None) -> None:
-        self.message, self.violations = message, tuple(violations)
+        # Messages contain texts of servers, programs and files. A traceback prints them to a terminal.
+        self.message = "\n".join(map(printable, message.split("\n")))
+        self.violations = tuple(Violation(*map(printable, violation)) for violation in violations)
         self.code = self._code if code is None else code
-        super().__init__(message)
+        super().__init__(self.message)
 
     @property
     def code_name(self) -> str:
@@ -120,6 +123,11 @@ class FailedPrecondition(Error, RuntimeError):
     """The call is not possible in the current state of the world or the server."""
 
     _code = commands_pb2.CODE_FAILED_PRECONDITION
+
+
+class AnswerExpired(FailedPrecondition):
+    """The connection was lost before the answer arrived, and now the server no longer has it. The command may have been
+    applied, and is not applied again. Read the current state."""
 
 
 class Aborted(Error, RuntimeError):
@@ -217,12 +225,10 @@ def printable(text: str) -> str:
 
 def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
-    violations = (
-        Violation(argument_of(printable(v.field)), _with_arguments(printable(v.allowed)), printable(v.got))
-        for v in status.violations
-    )
+    violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
     message = _with_arguments(printable(status.message))
-    error = _OF_CODE.get(status.code, Error)(message, violations, status.code)
+    kind = AnswerExpired if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD else _OF_CODE.get(status.code, Error)
+    error = kind(message, violations, status.code)
     error.reason = status.reason
     return error
 

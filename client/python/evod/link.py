@@ -2,6 +2,7 @@
 
 Threads      any number of threads may use one Link. Only the connection thread accesses the Core and the plans. This thread
              ends on close(), when the Link is garbage collected, or when the program ends.
+Processes    a forked process does not have the connection thread, so its calls raise NoConnection.
 """
 from __future__ import annotations
 
@@ -51,7 +52,9 @@ class Link:
         return self._run(self._inner.perform(plan))
 
     def apply(self, change: Callable[[], None]) -> None:
-        """Calls a function that changes the core, and sends the resulting bytes."""
+        """Calls a function that changes the core, and sends the resulting bytes. Does nothing in a forked process."""
+        if not self._inner.is_of_this_process:
+            return
         try:
             self._run(self._inner.apply(change))
         except NoConnection:  # the connection thread has ended, so this thread may use the core
@@ -67,11 +70,21 @@ class Link:
             raise
 
     def close(self) -> None:
-        """Closes the connection and ends its thread. Waiting calls in other threads raise NoConnection."""
+        """Closes the connection and ends its thread. Waiting calls in other threads raise NoConnection.
+
+        Does nothing in a forked process.
+        """
+        if not self._inner.is_of_this_process:
+            return  # another thread of the parent may have held the lock when this process was forked
         with self._lock:
             self._end()
 
     def _run(self, coroutine: Coroutine[Any, Any, T]) -> T:
+        try:
+            self._inner.require_own_process()
+        except NoConnection:
+            coroutine.close()
+            raise
         call = _Call(coroutine)
         try:
             with self._lock:
@@ -124,6 +137,9 @@ def _serve(loop: asyncio.AbstractEventLoop) -> None:
 
 
 def _end(link: aio_link.Link, loop: asyncio.AbstractEventLoop, thread: threading.Thread) -> None:
+    if not link.is_of_this_process:
+        return
+
     async def end() -> None:
         await link.close()
         others = asyncio.all_tasks() - {asyncio.current_task()}

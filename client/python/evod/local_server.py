@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import collections
+import contextlib
 import os
 import re
 import signal
@@ -66,6 +67,7 @@ class Server:
             env=environment(FOLDER=temporary),
             start_new_session=True,  # so that Ctrl-C on the terminal does not stop the server
         )
+        self._process = os.getpid()
         self.lines: collections.deque[str] = collections.deque(maxlen=1000)
         assert self._supervisor.stdout is not None
         for line in self._supervisor.stdout:
@@ -86,12 +88,19 @@ class Server:
         self._supervisor.wait()
 
     def end(self) -> None:
-        """Asks the server to stop, without waiting for it."""
-        if self._supervisor.stdin is not None and not self._supervisor.stdin.closed:
-            self._supervisor.stdin.close()
+        """Asks the server to stop, without waiting for it. Does nothing in a forked process."""
+        if os.getpid() == self._process and self._supervisor.stdin is not None and not self._supervisor.stdin.closed:
+            with contextlib.suppress(BrokenPipeError):  # the server has ended
+                # The line ends the server even if a forked process has inherited this end of the pipe.
+                self._supervisor.stdin.write("stop\n")
+                self._supervisor.stdin.flush()
+            with contextlib.suppress(BrokenPipeError):
+                self._supervisor.stdin.close()
 
     def stop(self) -> None:
-        """Stops the server and waits until it has written its runs."""
+        """Stops the server and waits until it has written its runs. Does nothing in a forked process."""
+        if os.getpid() != self._process:
+            return
         self.end()
         try:
             self._supervisor.wait(_STOP_TIMEOUT_S)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 
 from evod.endpoint import Endpoint
 from evod.errors import DamagedData, FailedPrecondition, InvalidArgument
@@ -23,6 +24,12 @@ def page_of(welcome: session_pb2.Welcome, server: Endpoint, tls: bool) -> str:
     if not re.fullmatch(r"[0-9A-Za-z._:%-]+", host):
         raise DamagedData("the server reports a host of its page that a URL cannot contain")
     return f"{'https' if tls else 'http'}://{Endpoint(host, welcome.page_port)}/"
+
+
+def warn_of_other_host(welcome: session_pb2.Welcome, server: Endpoint) -> None:
+    """Warns if the page is at another host than the server to which this client is connected."""
+    if welcome.page_host and welcome.page_host != server.host:
+        warnings.warn(f"the server reports that its page is at another host: {welcome.page_host}", stacklevel=4)
 
 
 def link_of(

@@ -23,6 +23,7 @@ from evod.errors import (
     Error,
     FailedPrecondition,
     InvalidArgument,
+    NoConnection,
     NotFound,
     Unimplemented,
     Violation,
@@ -583,10 +584,10 @@ def _goal_of(info: world_pb2.WorldInfo) -> int | None:
 
 
 def close_replay(world: str) -> Plan[None]:
-    """Closes a replay. Does nothing if the replay has already ended with its session."""
+    """Closes a replay. Does nothing if the replay has already ended with its session, or ends with it now."""
     try:
         yield from request("close_replay", world=world)
-    except NotFound:
+    except (NotFound, NoConnection):
         pass
 
 

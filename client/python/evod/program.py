@@ -16,8 +16,6 @@ _REFUSED_OPTION = re.compile(r"^(?:evod: )?--(?P<field>[a-z-]+): got (?P<got>.*?
 _UNKNOWN = re.compile(
     r"^\s+(?P<field>.+?)(?: \(line \d+\))?: unknown name(?:; did you mean (?P<meant>.*)\?|, allowed (?P<allowed>.*))?$"
 )
-_OPTION = re.compile(r"^--(?P<field>[a-z-]+): must be (?P<allowed>.*), not (?P<got>.*?)$")
-_REFUSED_USE = re.compile(r"^evod [a-z]+: --(?P<field>[a-z-]+): got (?P<got>.*?), allowed (?P<allowed>.*)$")
 _SEE_HELP = re.compile(r"^See evod( [a-z]+)? --help$")
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 _PROGRESS = re.compile(r"\r *(?:(\d+) of (\d+) runs|(\d+) % of)")

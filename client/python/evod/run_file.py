@@ -24,6 +24,7 @@ from evod.tables import html_table, pandas, read_csv
 from evod.v1 import commands_pb2
 
 _CAUSES = ("alive", "starved", "poisoned")
+_SENT_BY_SERVER = 2  # in the column sender of the journal
 
 
 def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None) -> RunFile:
@@ -56,6 +57,12 @@ def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | 
     return RunFile(path, program=program)
 
 
+def _remove(folder: str, process: int) -> None:
+    """Deletes a folder, but not in a process that was forked from the one that uses it."""
+    if os.getpid() == process:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 class RunFile:
     """An open run file, returned by `open_run` and `evod.run`. Its tables have the same columns as those of `evod export`.
 
@@ -68,7 +75,7 @@ class RunFile:
         self.path = pathlib.Path(path)
         self._program = program
         # Deletes the folder `temporary`, if there is one, when the file is closed or garbage collected.
-        self._clean_up = weakref.finalize(self, shutil.rmtree, temporary, True) if temporary is not None else None
+        self._clean_up = weakref.finalize(self, _remove, temporary, os.getpid()) if temporary is not None else None
         if not self.path.is_file():
             raise FileNotFound(f"there is no run file {self.path}")
         # SQLite creates its shared memory file beside the run file, which fails in a read-only folder. No server can write to
@@ -243,7 +250,9 @@ class RunFile:
     def events(self) -> Any:
         """Returns the journal as a DataFrame: the applied commands, with each request as JSON."""
         rows = []
-        for number, tick, client, data in self._rows("SELECT number, tick, client, request FROM journal ORDER BY number"):
+        columns = "number, tick, sender, user, program, address, request"
+        for *sent, data in self._rows(f"SELECT {columns} FROM journal ORDER BY number"):
+            number, tick, sender, *who = sent
             try:
                 request = commands_pb2.Request.FromString(data)
             except google.protobuf.message.DecodeError:
@@ -252,8 +261,8 @@ class RunFile:
             request.ClearField("request_id")
             text = google.protobuf.json_format.MessageToJson(request, preserving_proto_field_name=True, indent=None)
             kind = request.WhichOneof("kind") or "unknown"
-            rows.append((number, tick, client, kind, text))
-        names = ("number", "tick", "client", "kind", "request")
+            rows.append((number, tick, "server" if sender == _SENT_BY_SERVER else "client", *who, kind, text))
+        names = ("number", "tick", "sender", "user", "program", "address", "kind", "request")
         return pandas().DataFrame(rows, columns=names)
 
     def lineage(self, of: tuple[int, int, int] | None = None) -> Any:

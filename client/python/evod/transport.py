@@ -11,7 +11,7 @@ from evod.errors import DamagedData, NoConnection
 
 CONNECT_TIMEOUT_S = 5.0  # limit for connecting, and another such limit for receiving the Welcome
 READ_BYTES = 256 << 10
-_BACKOFF_MIN_S, _BACKOFF_MAX_S = 0.1, 5.0  # wait before reconnecting; each failed attempt doubles it
+_BACKOFF_MIN_S, BACKOFF_MAX_S = 0.1, 5.0  # wait before reconnecting; each failed attempt doubles it
 
 
 class Backoff:
@@ -19,16 +19,21 @@ class Backoff:
 
     def __init__(self) -> None:
         self.down_since: float | None = time.monotonic()  # when the session was lost; None: connected
-        self.retry_at = 0.0
+        self.failed_at, self.retry_at = 0.0, 0.0  # the last failure, and when to connect again
         self._backoff_s = _BACKOFF_MIN_S
 
-    def failed(self) -> None:
-        """Call it when the connection was lost or an attempt to connect has failed."""
-        now = time.monotonic()
+    def failed(self, late: bool = False) -> None:
+        """Call it when the connection was lost or an attempt to connect has failed.
+
+        late  the server is full. Another attempt soon would take the place of another client, or of another session of the
+              same user.
+        """
+        self.failed_at = now = time.monotonic()
+        self._backoff_s = BACKOFF_MAX_S if late else self._backoff_s
         self.down_since = now if self.down_since is None else self.down_since
         # Jitter, so that the clients of a server do not all reconnect at the same moment.
         self.retry_at = now + self._backoff_s * random.uniform(0.5, 1.0)
-        self._backoff_s = min(2 * self._backoff_s, _BACKOFF_MAX_S)
+        self._backoff_s = min(2 * self._backoff_s, BACKOFF_MAX_S)
 
     def reset(self) -> None:
         """Call it when the server has sent its Welcome."""

@@ -5,7 +5,7 @@
 //                hidden_max_ms the worker ends its subscriptions to snapshots until the page is visible again.
 // Reconnecting   While the connection is lost, the worker tries again after 0.25 s, then after twice as long, up to 5 s. The
 //                core then subscribes again and repeats the unanswered requests.
-import { ClientCore, type CoreEvent, type Subscription } from "./core/client_core";
+import { ClientCore, type CoreEvent, is_name_of_replay, type Subscription } from "./core/client_core";
 import { InvalidMessage } from "./core/errors";
 import { EventQueue } from "./core/event_queue";
 import type { Snapshot } from "./core/snapshot";
@@ -92,6 +92,9 @@ function begin(url: string, token: string, descriptor: ArrayBuffer): void {
   core.subscribe({ subscribe_events: {} });
   for (const [number, pane] of panes) {
     pane.subscription = pane.overview = null;
+    if (pane.watched && is_name_of_replay(pane.watched.world)) {
+      pane.watched = null; // it has ended with the last session; the page opens it again
+    }
     watch(number, pane);
   }
   backoff_ms = backoff_min_ms;
@@ -160,10 +163,13 @@ function lose(message: string, code: string): void {
   socket = null;
   ended?.close();
   const failed = core!.failed;
-  take(core!.lost({ message, code }));
+  const events = core!.lost({ message, code });
   post_state(failed ? "refused" : "lost", failed?.message ?? message, failed?.code ?? code);
+  take(events); // the page knows why its requests fail
   if (!failed) {
     ++reconnect_count;
+    // If the server is full, another attempt soon would take the place of another client.
+    backoff_ms = core!.retry_late ? backoff_max_ms : backoff_ms;
     connecting = setTimeout(open, backoff_ms * (0.8 + 0.4 * Math.random())) as unknown as number;
     backoff_ms = Math.min(backoff_max_ms, 2 * backoff_ms);
   }

@@ -227,6 +227,32 @@ class Roles(Case):
             self.assertNotIn(self.controller, url)
         self.assertNotIn(self.controller, self.served.output())
 
+    def follow(self, fragment):
+        """Follows a link to the page that is open."""
+        self.browser.run("location.hash = arguments[0]", fragment)
+
+    def test_the_page_shows_who_the_user_is(self):
+        self.enter(self.viewer)
+        self.browser.wait_for_text("vera (viewer)", ".session")
+
+    def test_a_link_does_not_replace_a_token_unasked(self):
+        browser = self.browser
+        self.enter(self.controller)
+        self.follow(f"#world=default&token={self.viewer}")
+        browser.wait_for_text("The link contains another token. You are connected as carl (controller).", ".banners")
+        self.assertNotIn("token", browser.driver.current_url)
+        browser.press("Keep mine")
+        browser.wait("!document.querySelector('.banners').textContent.includes('token')", "no question")
+        browser.wait_for_text("carl (controller)", ".session")
+        self.follow(f"#token={self.viewer}")
+        browser.press("Use the token of the link")
+        browser.wait_for_text("vera (viewer)", ".session")
+        browser.driver.get("about:blank")
+        self.enter(self.controller)
+        browser.wait_for_text("You are connected as vera (viewer).", ".banners")
+        browser.reload()
+        browser.wait_for_text("vera (viewer)", ".session")
+
     def test_a_viewer_changes_nothing(self):
         browser = self.browser
         self.enter(self.viewer)
@@ -274,6 +300,22 @@ class Roles(Case):
         browser.driver.refresh()
         browser.wait_for_text("The server requires a token.")
         self.assertEqual(browser.value("document.activeElement.id"), "token")
+
+
+class WithoutTokens(Case):
+    def test_a_link_with_a_token_does_not_lock_the_tab_out(self):
+        browser, served = self.browser, self.start()
+        browser.open(self.page(served, "#token=abc"), wait=False)
+        browser.wait("document.querySelector('#token')?.checkVisibility()", "the field for a token")
+        browser.press("Connect")
+        browser.wait_for_snapshot()
+        browser.wait_for_text("no token (admin)", ".session")
+        browser.run("location.hash = '#token=abc'")
+        browser.press("Use the token of the link")
+        browser.wait_for_text("token", ".notices")  # the reason of the server
+        browser.wait_for_text("no token (admin)", ".session")
+        browser.reload()
+        browser.wait_for_text("no token (admin)", ".session")
 
 
 class Controls(Case):

@@ -64,7 +64,7 @@ TEST(ServeOptions, DescribeTheServer) {
     EXPECT_EQ(server->listeners.port, 9);
     ASSERT_TRUE(server->listeners.http);
     EXPECT_EQ(server->listeners.http->port, 8);
-    EXPECT_EQ(server->session_bounds.sessions_max, 7u);
+    EXPECT_EQ(server->limits.sessions_max, 7u);
     const auto& worlds = std::get<network::LiveWorlds>(server->worlds);
     EXPECT_FALSE(worlds.storage);
     EXPECT_FALSE(worlds.processes);

@@ -186,7 +186,7 @@ TEST(Requests, TimeOutAndALateReplyIsIgnored) {
 TEST(Requests, StayWithinTheServersLimitOfUnanswered) {
     FakeServer server;
     Connection connection{server.options()};
-    FakeSession session = server.accept_and_welcome(2);
+    FakeSession session = server.accept_and_welcome(4); // the client uses half of it
     std::vector<std::future<Result<v1::Response>>> responses;
     for (std::uint64_t i = 1; i <= 5; ++i) {
         responses.push_back(connection.send(run_request(i)));
@@ -532,7 +532,13 @@ TEST(Views, AreRequestedChangedAndRenewed) {
         EXPECT_EQ(changed.set_view().subscription_id(), 7U);
         EXPECT_EQ(changed.set_view().view().region().left_px(), 2);
         connection.set_view(handle, view_of(3));
-        EXPECT_EQ(session.read_request().set_view().view().region().left_px(), 3);
+        session.answer_subscription(changed, 7); // one change is in flight at a time
+        const v1::Request last = session.read_request();
+        EXPECT_EQ(last.set_view().view().region().left_px(), 3);
+        session.answer_subscription(last, 7);
+        auto seen = connection.send(run_request(2));
+        session.answer(session.read_request());
+        ASSERT_TRUE(seen.get());
     }
     FakeSession again = server.accept_and_welcome();
     EXPECT_EQ(again.read_request().subscribe_snapshots().view().region().left_px(), 3);

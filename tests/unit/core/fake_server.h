@@ -105,7 +105,8 @@ class FakeServer {
         return {.server = endpoint(),
                 .client_name = "a test",
                 .connect_timeout = hang,
-                .backoff_min = std::chrono::milliseconds{1}};
+                .backoff_min = std::chrono::milliseconds{1},
+                .backoff_max = std::chrono::milliseconds{20}};
     }
     FakeSession accept() { return FakeSession{acceptor_.accept()}; }
     FakeSession accept_and_welcome(std::uint32_t requests_in_flight_max = 0, v1::Role role = v1::ROLE_UNSPECIFIED) {

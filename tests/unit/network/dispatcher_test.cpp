@@ -96,8 +96,16 @@ class DispatcherTest : public Loopback {
     runtime::Outbox outbox{[] {}};
     Streams streams{sessions, simulations, memory};
     int shut_downs = 0;
-    Dispatcher dispatcher{
-        context, simulations, outbox, sessions, streams, host, [this] { ++shut_downs; }, [] { return v1::Metrics{}; }};
+    static constexpr std::size_t replays_max = 4;
+    Dispatcher dispatcher{context,
+                          simulations,
+                          outbox,
+                          sessions,
+                          streams,
+                          host,
+                          replays_max,
+                          [this] { ++shut_downs; },
+                          [] { return v1::Metrics{}; }};
 };
 
 TEST_F(DispatcherTest, SendsACommandToTheSimulationOnce) {
@@ -225,7 +233,8 @@ TEST_F(DispatcherTest, RequestIdsBeginAt1) {
 
 TEST_F(DispatcherTest, ACommandMayBeRepeatedAfterAFullMailbox) {
     Client& client = connect(Role::Controller);
-    for (std::uint64_t id = 1; id <= mailbox_capacity; ++id) {
+    const std::size_t of_one_user = base::Quota{mailbox_capacity}.share();
+    for (std::uint64_t id = 1; id <= of_one_user; ++id) {
         ask(client, pause_of(id));
     }
     EXPECT_TRUE(client.responses.empty());
@@ -234,7 +243,7 @@ TEST_F(DispatcherTest, ACommandMayBeRepeatedAfterAFullMailbox) {
     EXPECT_EQ(client.responses[0].request_id(), 9u);
     EXPECT_EQ(client.responses[0].status().reason(), v1::REASON_SERVER_BUSY);
     EXPECT_EQ(counters.count(Limit::MailboxCommands), 1u);
-    EXPECT_EQ(take_commands().size(), mailbox_capacity);
+    EXPECT_EQ(take_commands().size(), of_one_user);
     ask(client, pause_of(9));
     EXPECT_EQ(take_commands().size(), 1u);
 }
@@ -259,6 +268,50 @@ TEST_F(DispatcherTest, CountsTheLimitThatARefusalReports) {
     finish(take_commands().at(0),
            base::refusal(base::RefusalCode::ResourceExhausted, "too many worlds", base::Reason::WorldsMax));
     EXPECT_EQ(counters.count(Limit::Worlds), 1u);
+}
+
+TEST_F(DispatcherTest, AReplayIsTakenBackFromTheUserWithTheMost) {
+    std::map<std::string, Client*> of;
+    const auto come = [&](const std::string& user) {
+        host.admit = [user](const std::string&, const std::string&) {
+            return access::Visitor{.name = user, .role = Role::Viewer};
+        };
+        of[user] = &connect(Role::Viewer);
+    };
+    std::uint64_t opened = 0;
+    const auto open = [&](const std::string& user) {
+        v1::Request request;
+        request.set_request_id(++opened);
+        request.mutable_open_replay()->set_world("w");
+        ask(*of[user], request);
+        std::vector<runtime::Mail> mail = mailbox.drain();
+        if (!mail.empty()) {
+            auto replay = std::get<runtime::ReplayMail>(std::get<runtime::FindRun>(mail.at(0)).purpose);
+            deliver(runtime::ReplayDone{.mail = std::move(replay), .world = "w@" + std::to_string(opened)});
+        }
+    };
+    for (const char* user : {"ada", "bob", "eve"}) {
+        come(user);
+    }
+    streams.subscribe(*of["bob"]->session, EventSubscription{.world = "w@4"});
+    for (const char* user : {"eve", "eve", "eve", "bob"}) {
+        open(user);
+    }
+    EXPECT_EQ(of["eve"]->responses.at(2).status().reason(), v1::REASON_REPLAYS_MAX) << "half of the places are taken";
+    open("bob");
+    EXPECT_TRUE(of["bob"]->events.empty());
+    open("ada");
+    open("ada");
+    EXPECT_EQ(of["ada"]->responses.size(), 2u);
+    EXPECT_FALSE(of["ada"]->responses.at(0).has_status());
+    EXPECT_EQ(of["ada"]->responses.at(1).status().reason(), v1::REASON_REPLAYS_MAX) << "eve has 2 left, ada 1";
+    ASSERT_EQ(of["bob"]->events.size(), 1u);
+    EXPECT_TRUE(of["bob"]->events[0].has_world_deleted());
+    EXPECT_EQ(of["bob"]->events[0].world(), "w@4");
+    EXPECT_EQ(of["bob"]->session->replays, (std::set<std::string>{"w@5"}));
+    EXPECT_EQ(of["eve"]->session->replays, (std::set<std::string>{"w@1", "w@2"}));
+    EXPECT_EQ(counters.taken_back_count(Limit::Replays), 1u);
+    EXPECT_EQ(counters.count(Limit::Replays), 2u);
 }
 
 TEST_F(DispatcherTest, RefusesUnknownSubscriptionsByTheirField) {
@@ -370,7 +423,7 @@ TEST_F(DispatcherTest, SendsCommandsOfTheServerItself) {
     const auto waiting = take_commands();
     ASSERT_EQ(waiting.size(), 2u) << "each has a request_id of its own";
     EXPECT_EQ(waiting[0].session, 0u);
-    EXPECT_EQ(waiting[0].origin.client, "evod");
+    EXPECT_EQ(waiting[0].origin.by, base::server_actor());
     EXPECT_NE(waiting[0].origin.request_id, waiting[1].origin.request_id);
 }
 

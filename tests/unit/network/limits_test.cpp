@@ -21,16 +21,17 @@ TEST(Limits, HaveOneRowEachInEnumOrder) {
 }
 
 TEST(Limits, ReachClientsAsTheTableHasThem) {
-    const v1::Limits limits = limits_message({.sessions_max = 7, .sessions_per_address_max = 3});
+    const v1::Limits limits = limits_message({.sessions_max = 7, .worlds_max = 3, .replays_max = 5});
     EXPECT_EQ(limits.sessions_max(), 7u);
-    EXPECT_EQ(limits.sessions_per_address_max(), 3u);
+    EXPECT_EQ(limits.worlds_max(), 3u);
+    EXPECT_EQ(limits.replays_max(), 5u);
     EXPECT_EQ(limits.snapshot_rate_hz_max(), snapshot_rate_hz_max);
     EXPECT_EQ(limits.requests_in_flight_max(), requests_in_flight_max);
     EXPECT_EQ(limits.control_frame_bytes_max(), 1u << 20);
     EXPECT_EQ(limits.http_connections_max(), http_connections_max);
     EXPECT_EQ(v1::Limits::descriptor()->field_count(), static_cast<int>(limit_table().size()));
     const std::string list = limit_list();
-    EXPECT_NE(list.find("| `sessions_max` | 256 | "), std::string::npos) << list;
+    EXPECT_NE(list.find("| `sessions_max` | 256 | 128 | "), std::string::npos) << list;
 }
 
 TEST(Limits, HaveACounterEach) {

@@ -11,10 +11,10 @@ using access::Role;
 
 class SessionTableTest : public Loopback {
   protected:
-    static constexpr SessionBounds bounds{.sessions_max = 3, .sessions_per_address_max = 2};
-
     SessionTableTest() {
         host.ended = [this](Session& ended) { table.forget(ended); };
+        host.make_room = [this](const std::string& account) { return table.make_room(account); };
+        host.admit = [](const std::string& token, const std::string&) { return access::Visitor{.name = token}; };
     }
     void TearDown() override {
         const Sessions all = table.sessions();
@@ -25,14 +25,15 @@ class SessionTableTest : public Loopback {
         context.run();
         EXPECT_TRUE(table.sessions().empty());
     }
-    /// Connects a client. It sends a Hello only if it is greeted.
-    void accept(bool is_greeted) {
+    /// Connects a client of this user. nullopt: it sends no Hello.
+    void accept(const std::optional<std::string>& user) {
         tcp::acceptor acceptor{context, tcp::endpoint{asio::ip::address_v4::loopback(), 0}};
         tcp::socket& client = sockets.emplace_back(context);
         client.connect(acceptor.local_endpoint());
         table.accept(std::make_unique<Transport>(acceptor.accept(), nullptr));
-        if (is_greeted) {
+        if (user) {
             v1::ClientMessage message;
+            message.mutable_hello()->set_token(*user);
             message.mutable_hello()->set_protocol_version(codec::protocol_version);
             asio::write(client, asio::buffer(codec::encode_frame(codec::Channel::Control, message)));
         }
@@ -56,13 +57,13 @@ class SessionTableTest : public Loopback {
         return v1::REASON_UNSPECIFIED;
     }
 
-    SessionTable table{host, bounds};
+    SessionTable table{host, 4};
     std::deque<tcp::socket> sockets;
 };
 
 TEST_F(SessionTableTest, NumbersItsSessions) {
-    accept(true);
-    accept(false);
+    accept("ada");
+    accept(std::nullopt);
     ASSERT_EQ(table.sessions().size(), 2u);
     EXPECT_TRUE(find_session(table.sessions(), 1)->greeted());
     EXPECT_FALSE(find_session(table.sessions(), 2)->greeted());
@@ -70,36 +71,55 @@ TEST_F(SessionTableTest, NumbersItsSessions) {
     EXPECT_EQ(host.traffic.connections.value(), 2u);
 }
 
-TEST_F(SessionTableTest, RefusesMoreSessionsOfAnAddress) {
-    accept(true);
-    accept(true);
-    accept(true);
-    EXPECT_EQ(table.sessions().size(), 2u);
+TEST_F(SessionTableTest, AUserHasAtMostHalfOfTheSessions) {
+    for (int i = 0; i < 3; ++i) {
+        accept("eve");
+    }
     EXPECT_EQ(reason_of_end(2), v1::REASON_SESSIONS_MAX);
-    EXPECT_EQ(counters.count(Limit::SessionsPerAddress), 1u);
-    EXPECT_EQ(counters.count(Limit::Sessions), 0u);
+    EXPECT_EQ(counters.count(Limit::Sessions), 1u);
+    accept("ada");
+    EXPECT_EQ(table.places().held("eve"), 2u);
+    EXPECT_EQ(table.places().held("ada"), 1u);
 }
 
-TEST_F(SessionTableTest, ASilentSessionMakesRoom) {
-    accept(true);
-    accept(false);
-    accept(true);
-    EXPECT_EQ(table.sessions().size(), 2u);
-    EXPECT_EQ(reason_of_end(0), v1::REASON_UNSPECIFIED);
-    EXPECT_EQ(reason_of_end(1), v1::REASON_SESSIONS_MAX);
-    EXPECT_TRUE(find_session(table.sessions(), 3)->greeted());
+TEST_F(SessionTableTest, TheUserWithTheMostLosesTheOldestIdleSession) {
+    for (const char* user : {"eve", "eve", "bob", "bob"}) {
+        accept(user);
+    }
+    find_session(table.sessions(), 3)->requests.commands_under_way = 1;
+    accept("ada");
+    EXPECT_EQ(reason_of_end(3), v1::REASON_SESSIONS_MAX) << "the older session of bob has a command under way";
+    EXPECT_EQ(counters.taken_back_count(Limit::Sessions), 1u);
+    EXPECT_EQ(counters.count(Limit::Sessions), 0u);
+    EXPECT_EQ(table.places().held("ada"), 1u);
+    EXPECT_EQ(table.places().held("bob"), 1u);
+    accept("cat");
+    EXPECT_EQ(reason_of_end(0), v1::REASON_SESSIONS_MAX);
+    accept("dan");
+    EXPECT_EQ(reason_of_end(6), v1::REASON_SESSIONS_MAX) << "all have one each, so nothing is taken from a user";
+}
+
+TEST_F(SessionTableTest, ConnectionsWithoutHelloTakeNoSession) {
+    for (std::uint32_t i = 0; i < newcomers_max; ++i) {
+        accept(std::nullopt);
+    }
+    EXPECT_EQ(table.newcomers().held(), newcomers_max / 2) << "an address may have half of the places";
+    EXPECT_EQ(reason_of_end(0), v1::REASON_SESSIONS_MAX);
+    EXPECT_EQ(reason_of_end(newcomers_max / 2), v1::REASON_UNSPECIFIED);
+    accept("ada");
+    EXPECT_EQ(table.places().held("ada"), 1u);
 }
 
 TEST_F(SessionTableTest, RefusesAllOnRequest) {
-    accept(true);
+    accept("ada");
     table.refuse_all();
-    accept(true);
-    EXPECT_EQ(table.sessions().size(), 1u);
+    accept("ada");
+    EXPECT_EQ(table.places().held(), 1u);
     EXPECT_EQ(reason_of_end(1), v1::REASON_SERVER_GOING_AWAY);
 }
 
 TEST_F(SessionTableTest, CountsEndedSessions) {
-    accept(true);
+    accept("ada");
     find_session(table.sessions(), 1)->close();
     settle();
     EXPECT_EQ(table.ended_count(), 1u);
@@ -156,7 +176,7 @@ class EvictionTest : public SessionTableTest {
     static constexpr std::size_t kib = 1 << 10;
     SendMemory little{1000 * kib, [] {}};
     SessionHost little_host{counters, little};
-    SessionTable little_table{little_host, {.sessions_max = 100, .sessions_per_address_max = 100}};
+    SessionTable little_table{little_host, 100};
     std::string user;
 };
 

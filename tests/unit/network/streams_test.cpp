@@ -114,7 +114,7 @@ TEST_F(StreamsTest, ViewersSeeOnlyTheUserOfAChange) {
 TEST_F(StreamsTest, DroppedEventsAreReportedToSubscribers) {
     Client &subscriber = connect(Role::Admin), &other = connect(Role::Admin);
     streams.subscribe(*subscriber.session, EventSubscription{.world = "a"});
-    streams.deliver({.deliveries = {}, .dropped_events = 3, .snapshots = {}});
+    streams.deliver({.deliveries = {}, .dropped_events = {{"", 3}}, .snapshots = {}});
     settle();
     publish("a");
     publish("b");

@@ -13,7 +13,7 @@ namespace evod::protocol {
 namespace {
 
 TEST_F(Lived, EveryKindOfEventIsConverted) {
-    const std::string by = "karl: evoctl 127.0.0.1:5000";
+    const base::Actor by = base::client_actor("karl", "evoctl", "127.0.0.1:5000");
     const simulation::EventKind kinds[] = {simulation::GenerationFinished{{{}}},
                                            simulation::MigrationHappened{1, {{0, 1, 2}}},
                                            simulation::Extinction{1, 2, 30},
@@ -38,7 +38,7 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
             EXPECT_THAT(unset_in(event.change_dropped()), testing::IsEmpty());
         }
     }
-    const simulation::EventKind scheduled = simulation::ParametersChanged{0, "", {"mutation_chance"}, 7};
+    const simulation::EventKind scheduled = simulation::ParametersChanged{0, {}, {"mutation_chance"}, 7};
     EXPECT_EQ(to_proto(simulation::Event{"w", {1, 2}, 3, scheduled}, laboratory).parameters_changed().by().kind(),
               v1::ACTOR_KIND_SCHEDULE);
     const parameters::PlannedChange change{
@@ -66,7 +66,7 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
                                             simulation::ResetWorld{}, simulation::Pause{},
                                             simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}}};
     for (const auto& command : commands) {
-        const auto event = event_of(command, applied, "a client", laboratory);
+        const auto event = event_of(command, applied, base::client_actor({}, "a client", "::1:5000"), laboratory);
         ASSERT_TRUE(event);
         cases.insert(event->kind_case());
     }
@@ -78,7 +78,7 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
     }
     cases.insert(event_of(simulation::Storage{}).kind_case());
     cases.insert(event_of(simulation::DamagedWorld{}).kind_case());
-    EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, "", laboratory)) << "a dry run";
+    EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, {}, laboratory)) << "a dry run";
     // All but the two events that the network itself creates, and the two about fitness (ratings_test.cpp).
     EXPECT_EQ(static_cast<int>(cases.size()) + 4, v1::Event::descriptor()->oneof_decl(0)->field_count());
 }

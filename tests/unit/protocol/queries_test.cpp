@@ -66,8 +66,8 @@ TEST_F(Queries, WithRowsAreConvertedLater) {
 
 TEST_F(Queries, OfAHistoryListTheChangesOfParameters) {
     const std::vector<parameters::Assignment> assignments{{"mutation_chance", 0.5}, {"food_count", 7u}};
-    ASSERT_TRUE(
-        laboratory.apply(simulation::SetParameters{"w", assignments, false, {}, {}, "alice: evoctl 127.0.0.1:5"}));
+    ASSERT_TRUE(laboratory.apply(simulation::SetParameters{
+        "w", assignments, false, {}, {}, base::client_actor("alice", "evoctl", "127.0.0.1:5")}));
     v1::Request request;
     request.mutable_get_history();
     const v1::History history = answer(request).history();
@@ -130,7 +130,7 @@ TEST_F(Queries, OfAViewerShowNoProgramsOfOthers) {
                                   .dry_run = false,
                                   .expected_revision = {},
                                   .at = parameters::PlannedMoment{.generation = 90, .tick = {}},
-                                  .by = "anna: evoctl 127.0.0.1:5000"}));
+                                  .by = base::client_actor("anna", "evoctl", "127.0.0.1:5000")}));
     v1::Request request;
     request.mutable_get_parameters();
     EXPECT_EQ(answer(request).parameters().planned(0).by().client(), "evoctl");

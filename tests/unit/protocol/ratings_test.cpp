@@ -97,13 +97,16 @@ TEST_F(AwaitedFitness, IsInTheStateOfTheWorldAndInEvents) {
     const simulation::SetFitness first{"w", 1, 0, 0, {1, 2, 3}}, second{"w", 1, 1, 0, {1, 2, 3}};
     auto applied = laboratory.apply(first);
     ASSERT_TRUE(applied);
-    const auto set = event_of(first, *applied, "alice", laboratory);
+    const auto set = event_of(first, *applied, base::client_actor({}, "alice", "::1:5000"), laboratory);
     ASSERT_TRUE(set);
     EXPECT_EQ(set->fitness_set().organism_count(), 3u);
     EXPECT_THAT(set->fitness_set().awaited_islands(), ElementsAre(1));
     applied = laboratory.apply(second);
     ASSERT_TRUE(applied);
-    EXPECT_THAT(event_of(second, *applied, "alice", laboratory)->fitness_set().awaited_islands(), IsEmpty());
+    EXPECT_THAT(event_of(second, *applied, base::client_actor({}, "alice", "::1:5000"), laboratory)
+                    ->fitness_set()
+                    .awaited_islands(),
+                IsEmpty());
     EXPECT_FALSE(to_proto(entry()).has_awaited_fitness());
 }
 

@@ -108,7 +108,7 @@ class RecordedRun {
         auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
         if (auto* set = std::get_if<simulation::SetParameters>(&*command)) {
-            set->by = "alice"; // as a server does
+            set->by = base::client_actor("alice", "evoctl", "127.0.0.1:5000"); // as a server does
         }
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
@@ -145,7 +145,7 @@ class RecordedRun {
         const auto there = laboratory_.find("w");
         return {.tick = applied.tick,
                 .control = there ? (*there)->control : simulation::RunControl{},
-                .origin = {.client = "alice",
+                .origin = {.by = base::client_actor("alice", "evoctl", "127.0.0.1:5000"),
                            .client_key = "test",
                            .request_id = requests_,
                            .request = request.SerializeAsString()},

@@ -1,12 +1,12 @@
 #include "server/parameters/schedule.h"
 
+#include "server/jobs/thread_pool.h"
 #include "server/parameters/experiment.h"
 #include "server/replay/fork.h"
 #include "server/replay/past_changes.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
-#include "server/jobs/thread_pool.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -235,7 +235,7 @@ TEST_F(StoredScheduleTest, PlannedChangesSurviveAKillAtAnyMoment) {
             EXPECT_EQ(again.planned()[i].id, run.world().planned()[i].id);
             EXPECT_EQ(again.planned()[i].at, run.world().planned()[i].at);
             EXPECT_EQ(again.planned()[i].assignments, run.world().planned()[i].assignments);
-            EXPECT_EQ(again.planned()[i].by, "alice") << "with the name of its client";
+            EXPECT_EQ(again.planned()[i].by.user, "alice") << "with the name of its client";
         }
         EXPECT_EQ(again.changes().all(), run.world().changes().all()) << ticks;
         EXPECT_EQ(again.plan({.id = 0, .at = {.generation = 99, .tick = {}}, .assignments = {}, .by = {}}), 6u);

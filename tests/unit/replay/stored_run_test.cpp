@@ -35,7 +35,7 @@ TEST(StoredRun, NewRecordsBeginAfterTheLastKnownEntry) {
         }
     }
     // Entries that are known are not read, so the damage of this row is not found.
-    change(data->file_of("w"), "UPDATE journal SET client = 'mallory' WHERE number = 1");
+    change(data->file_of("w"), "UPDATE journal SET user = 'mallory' WHERE number = 1");
     EXPECT_FALSE(past.new_records(0));
     EXPECT_TRUE(past.new_records(1));
 }

@@ -55,8 +55,8 @@ std::string contents_of(RunFile& file) {
     std::ostringstream text;
     text << file.identity().name << ' ' << to_text(file.identity().run_id) << ' ' << file.identity().seed.value << '\n';
     for (const JournalEntry& entry : *file.journal().read()) {
-        text << entry.number << ' ' << entry.tick << ' ' << entry.origin.client << ' ' << entry.origin.client_key << ' '
-             << entry.origin.request_id << ' ' << entry.origin.request << ' ' << entry.answer << '\n';
+        text << entry.number << ' ' << entry.tick << ' ' << to_text(entry.origin.by) << ' ' << entry.origin.client_key
+             << ' ' << entry.origin.request_id << ' ' << entry.origin.request << ' ' << entry.answer << '\n';
     }
     for (std::uint64_t generation = 1; generation <= file.generations().last(); ++generation) {
         const auto begun = *file.generations().beginning_of(generation);

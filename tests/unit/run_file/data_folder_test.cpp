@@ -308,6 +308,40 @@ TEST_F(ArchiveTest, TheAnswersOfAResetRunAreKept) {
     EXPECT_EQ(remembered.back(), 9u); // of the run that continues
 }
 
+TEST_F(ArchiveTest, TheKeysOfOldCommandsAreKept) {
+    {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        for (std::uint32_t i = 0; i < Archive::answers_kept_of_ended + 4; ++i) {
+            run.command(set_parameter("food_health", 2.0 + i % 2));
+        }
+        run.reset({9}, {3, 1});
+        run.recorder().close_all(run.laboratory());
+    }
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    const auto answers = (*archive)->take_answers();
+    const auto keys = (*archive)->take_used_keys();
+    ASSERT_EQ(answers.size(), Archive::answers_kept_of_ended);
+    ASSERT_EQ(keys.size(), 1u);
+    EXPECT_EQ(keys[0].by.user, "alice");
+    EXPECT_EQ(keys[0].client_key, "test");
+    EXPECT_EQ(keys[0].highest_id + 1, answers[0].origin.request_id);
+}
+
+TEST_F(ArchiveTest, TheKeysOfADamagedWorldAreKept) {
+    record(200);
+    change(folder.path() + "/w.evod", "UPDATE population SET chromosomes = x'00'");
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    ASSERT_TRUE((*archive)->is_damaged("w"));
+    EXPECT_TRUE((*archive)->take_answers().empty());
+    const auto keys = (*archive)->take_used_keys();
+    ASSERT_EQ(keys.size(), 1u);
+    EXPECT_EQ(keys[0].highest_id, 1u);
+}
+
 /// The files of a reset world, as a crash can leave them.
 class Replacing : public ArchiveTest {
   protected:

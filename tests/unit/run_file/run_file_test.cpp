@@ -109,7 +109,8 @@ TEST_F(RunFileTest, ReadsBackEverythingThatWasWritten) {
     const JournalEntry entry{
         .number = 1,
         .tick = 17,
-        .origin = {"ä \n client", "key", ~std::uint64_t{0}, std::string("\0\1\2", 3)},
+        .origin = {base::client_actor("ä", "a: b\n client:", "::1:5000"), "key", ~std::uint64_t{0},
+                   std::string("\0\1\2", 3)},
         .answer = std::string("\0\xff", 2),
         .control = {
             .endless = true, .until_generation = 3, .until_tick = std::nullopt, .paused = true, .speed = std::nullopt}};
@@ -139,7 +140,7 @@ TEST_F(RunFileTest, ReadsBackEverythingThatWasWritten) {
     const auto journal = *(*file)->journal().read();
     ASSERT_EQ(journal.size(), 1u);
     EXPECT_EQ(journal[0].tick, entry.tick);
-    EXPECT_EQ(journal[0].origin.client, entry.origin.client);
+    EXPECT_EQ(journal[0].origin.by, entry.origin.by);
     EXPECT_EQ(journal[0].origin.request_id, entry.origin.request_id);
     EXPECT_EQ(journal[0].origin.request, entry.origin.request);
     EXPECT_EQ(journal[0].answer, entry.answer);
@@ -239,20 +240,57 @@ TEST_F(RunFileTest, OtherFilesAreRefused) {
     std::filesystem::remove(path);
 }
 
+TEST_F(RunFileTest, TheJournalListsItsClientKeys) {
+    const std::string path = folder.path() + "/run.evod";
+    const auto file = RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {});
+    ASSERT_TRUE(file) << to_text(file.error());
+    std::uint64_t number = 0;
+    (*file)->begin();
+    const auto write = [&](const base::Actor& by, const std::string& key, std::uint64_t id) {
+        (*file)->write(JournalEntry{
+            .number = ++number, .tick = 0, .origin = {by, key, id, "request"}, .answer = {}, .control = {}});
+    };
+    const base::Actor ada = base::client_actor("ada", "a: b", "10.0.0.1:1"),
+                      anyone = base::client_actor("", "a", "::1:2");
+    write(ada, "k", 3);
+    write(ada, "k", 2);
+    write(anyone, "k", 1);
+    write(base::server_actor(), "of the server", 1);
+    write(ada, "large", ~std::uint64_t{0});
+    write(ada, "large", 7);
+    write(ada, "k", 9);
+    ASSERT_TRUE((*file)->commit());
+
+    const auto listed = [&](std::uint64_t last, std::size_t keys_max) {
+        std::string text;
+        for (const UsedKey& key : *(*file)->journal().used_keys(last, keys_max)) {
+            const bool is_client = key.by.kind == base::Actor::Kind::Client;
+            text += (is_client ? key.by.user + "/" : "server/") + key.by.address + "/" + key.client_key + "/" +
+                    std::to_string(key.highest_id) + " ";
+        }
+        return text;
+    };
+    EXPECT_EQ(listed(6, 9), "ada//k/3 /::1:2/k/1 server//of the server/1 ada//large/18446744073709551615 ");
+    EXPECT_EQ(listed(7, 2), "ada//large/18446744073709551615 ada//k/9 ") << "the two used last";
+    EXPECT_EQ(listed(2, 9), "ada//k/3 ");
+    EXPECT_EQ(listed(0, 9), "");
+}
+
 TEST_F(RunFileTest, OtherFormatsAreRefused) {
     const std::string path = recorded();
-    change(path, "PRAGMA user_version = 5");
-    EXPECT_THAT(RunFile::open(path, {}).error().message, HasSubstr("a newer evod: its format is version 5"));
-    change(path, "PRAGMA user_version = 3");
+    change(path, "PRAGMA user_version = 6");
+    EXPECT_THAT(RunFile::open(path, {}).error().message, HasSubstr("a newer evod: its format is version 6"));
+    change(path, "PRAGMA user_version = 4");
     const base::Refusal older = RunFile::open_read_only(path).error();
-    EXPECT_THAT(older.message, HasSubstr("an older evod: its format is version 3, this evod reads version 4"));
+    EXPECT_THAT(older.message, HasSubstr("an older evod: its format is version 4, this evod reads version 5"));
     EXPECT_EQ(older.code, RefusalCode::FailedPrecondition);
 }
 
-/// Recorded by evod 0.2.0 before its tables were declared in rows.h: a fork within generation 3 that ran to generation 7.
-TEST_F(RunFileTest, AStoredFileOfFormat4IsReadAndContinued) {
+/// Recorded by evod 0.2.0 before its tables were declared in rows.h, in format 4: a fork within generation 3 that ran to
+/// generation 7. Only the table of the journal and its rows were written again for format 5.
+TEST_F(RunFileTest, AStoredFileOfFormat5IsReadAndContinued) {
     const std::string path = folder.path() + "/stored.evod";
-    std::filesystem::copy_file(std::filesystem::path{EVOD_SOURCE_FOLDER} / "tests/unit/run_file/format_4.evod", path);
+    std::filesystem::copy_file(std::filesystem::path{EVOD_SOURCE_FOLDER} / "tests/unit/run_file/format_5.evod", path);
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
     {
         const auto file = RunFile::open_read_only(path);
@@ -288,7 +326,7 @@ TEST_F(RunFileTest, ANewFileHasTheSchemaOfAStoredOne) {
         return schema;
     };
     const std::string stored =
-        (std::filesystem::path{EVOD_SOURCE_FOLDER} / "tests/unit/run_file/format_4.evod").string();
+        (std::filesystem::path{EVOD_SOURCE_FOLDER} / "tests/unit/run_file/format_5.evod").string();
     const std::string path = folder.path() + "/new.evod";
     ASSERT_TRUE(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}));
     EXPECT_EQ(schema_of(path), schema_of(stored));

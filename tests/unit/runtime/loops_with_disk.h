@@ -66,7 +66,7 @@ class LoopsWithDisk : public testing::Test {
         const auto command = protocol::to_command(request, {base::Seed{7}, {requests, 1}});
         ASSERT_TRUE(command) << to_text(command.error());
         ASSERT_TRUE(loops.simulations.try_send(CommandMail{*command,
-                                                           {.client = "a client",
+                                                           {.by = base::client_actor({}, "a client", "127.0.0.1:5000"),
                                                             .client_key = "test",
                                                             .request_id = requests,
                                                             .request = request.SerializeAsString()},

@@ -45,9 +45,25 @@ TEST(Outbox, DropsAndCountsExcessEventsButNothingElse) {
     EXPECT_EQ(outbox.fill().events, 2);
     const auto taken = outbox.take();
     EXPECT_EQ(taken.deliveries.size(), 2 + 3 * 5);
-    EXPECT_EQ(taken.dropped_events, 3);
+    EXPECT_EQ(taken.dropped_events, (std::map<std::string, std::uint64_t>{{"", 3}}));
     outbox.event({});
-    EXPECT_EQ(outbox.take().dropped_events, 0);
+    EXPECT_TRUE(outbox.take().dropped_events.empty());
+}
+
+TEST(Outbox, EventsOfReplaysLeaveHalfToLiveWorlds) {
+    Outbox outbox{[] {}, 8};
+    for (int i = 0; i < 5; ++i) {
+        outbox.event({}, "eve");
+        outbox.event({}, "bob");
+    }
+    EXPECT_EQ(outbox.fill().events, 4) << "half, of which each user has half";
+    for (int i = 0; i < 5; ++i) {
+        outbox.event({});
+    }
+    EXPECT_EQ(outbox.fill().events, 8);
+    EXPECT_EQ(outbox.take().dropped_events, (std::map<std::string, std::uint64_t>{{"", 1}, {"bob", 3}, {"eve", 3}}));
+    outbox.event({}, "eve");
+    EXPECT_EQ(outbox.fill().events, 1);
 }
 
 TEST(Outbox, KeepsTheNewestSnapshotOfEachWorld) {

@@ -23,16 +23,37 @@ TEST_F(LoopsWithDisk, ReplaysBeingOpenedCloseWithTheirOwner) {
             opened += name ? 1 : 0;
         });
     };
+    constexpr std::size_t replays = 4;
     open(1); // ends while its run is being found
     loops.simulations.forget(1);
-    for (std::size_t i = 0; i <= ReplayLoop::replays_max; ++i) {
+    for (std::size_t i = 0; i < replays; ++i) {
         open(2);
     }
-    pass_until([&] { return answered == ReplayLoop::replays_max + 1; });
-    EXPECT_EQ(opened, ReplayLoop::replays_max) << "replays being opened are counted";
-    EXPECT_EQ(loops.replays.laboratory().entries().size(), ReplayLoop::replays_max);
+    pass_until([&] { return answered == replays; });
+    EXPECT_EQ(opened, replays);
+    EXPECT_EQ(loops.replays.laboratory().entries().size(), replays);
     loops.simulations.forget(2);
     loops.pass();
+    EXPECT_TRUE(loops.replays.laboratory().entries().empty());
+}
+
+TEST_F(LoopsWithDisk, AReplayThatHasLostItsPlaceEnds) {
+    ask_create("w");
+    ask_run("w");
+    pass_until([&] { return tick("w") > 300; });
+    const std::string open = open_replay("w");
+    loops.simulations.end_replay({.name = open});
+    loops.pass();
+    EXPECT_TRUE(loops.replays.laboratory().entries().empty());
+    std::optional<base::RefusalCode> refused;
+    ask(OpenReplay{.world = "w", .at = replay::WantedMoment{.generation = {}, .tick = 290}}, 1,
+        [&](const base::Result<std::string>& name) { refused = name.error().code; });
+    const std::uint64_t request = requests;
+    pass_until([&] {
+        loops.simulations.end_replay({.session = 1, .request_id = request}); // until its run is found, it has no seek
+        return refused.has_value();
+    });
+    EXPECT_EQ(refused, base::RefusalCode::ResourceExhausted);
     EXPECT_TRUE(loops.replays.laboratory().entries().empty());
 }
 
@@ -178,7 +199,7 @@ TEST_F(LoopsWithDisk, UsersGetEqualTimeWhateverTheyOpen) {
     ask_pause("w");
     std::vector<std::string> of_eve;
     for (std::uint64_t session = 2; session < 5; ++session) {
-        for (std::size_t i = 0; i < ReplayLoop::replays_max; ++i) {
+        for (int i = 0; i < 4; ++i) {
             of_eve.push_back(open_replay("w", {}, session, "eve"));
         }
     }

@@ -49,10 +49,8 @@ class Loop : public testing::Test {
   protected:
     Loop()
         : loop{{mailbox, demand, executor, clock},
-               {.events =
-                    [this](const Laboratory&, std::vector<simulation::Event> reported) {
-                        events.insert(events.end(), reported.begin(), reported.end());
-                    },
+               {.events = [this](const Laboratory&, std::vector<simulation::Event> reported,
+                                 const auto&) { events.insert(events.end(), reported.begin(), reported.end()); },
                 .snapshot = [this](SnapshotPtr snapshot) { snapshots.push_back(std::move(snapshot)); },
                 .reply =
                     [this](Reply reply) {
@@ -66,7 +64,7 @@ class Loop : public testing::Test {
                     },
                 .counted = &counted}} {}
 
-    void send(simulation::Command command) { mailbox.try_push(CommandMail{std::move(command), {}, "command"}); }
+    void send(simulation::Command command) { mailbox.try_push(CommandMail{std::move(command), {}, "command"}, ""); }
     /// Sends queries. The simulation calls on_query() while it answers them.
     void send_queries(int count) {
         for (int i = 0; i < count; ++i) {
@@ -209,7 +207,7 @@ TEST_F(Loop, ASliceEndsWhenMailArrives) {
     bool sent = false;
     SimulationLoop other{{mailbox, demand, executor, clock},
                          {.events =
-                              [&](const Laboratory&, std::vector<simulation::Event>) {
+                              [&](const Laboratory&, std::vector<simulation::Event>, const auto&) {
                                   if (!sent) {
                                       send(simulation::Pause{"quick"});
                                   }
@@ -649,7 +647,7 @@ TEST(SimulationThread, ReproducesTheHash) {
                             mailbox,
                             std::make_unique<SimulationLoop>(
                                 LoopTools{mailbox, demand, executor, clock},
-                                LoopOutputs{.events = [](const Laboratory&, std::vector<simulation::Event>) {},
+                                LoopOutputs{.events = [](auto&&...) {},
                                             .snapshot = [](SnapshotPtr) {},
                                             .reply =
                                                 [&](const Reply& reply) {
@@ -661,7 +659,7 @@ TEST(SimulationThread, ReproducesTheHash) {
                                                     }
                                                 }})};
     const auto send = [&](simulation::Command command) {
-        ASSERT_TRUE(mailbox.try_push(CommandMail{std::move(command), {}, "command"}));
+        ASSERT_TRUE(mailbox.try_push(CommandMail{std::move(command), {}, "command"}, ""));
     };
     const auto look = [&] {
         auto info = seen.emplace().get_future();
@@ -694,7 +692,7 @@ TEST_F(Loop, SlowTicksGetCheckpointsThatChangeNothing) {
         SimulationLoop kept{
             {letters, demand, executor, clock}, {.events = [](auto&&...) {}, .snapshot = [](auto&&) {}}, {}, &recorder};
         const auto apply = [&](simulation::Command command) {
-            letters.try_push(CommandMail{std::move(command), {}, "command"});
+            letters.try_push(CommandMail{std::move(command), {}, "command"}, "");
             kept.pass();
         };
         apply(create("w", 3));
@@ -736,7 +734,7 @@ TEST_F(Loop, AWorldIsRefusedIfItsFileExists) {
                         &recorder};
     const auto apply = [&](simulation::Command command) {
         said.clear();
-        letters.try_push(CommandMail{std::move(command), {}, "command"});
+        letters.try_push(CommandMail{std::move(command), {}, "command"}, "");
         kept.pass();
     };
     const std::string taken = data->file_of("taken");

@@ -357,7 +357,9 @@ TEST_F(OneWorld, ReportsEachGeneration) {
 }
 
 TEST(Laboratory, CreatesWorldsUpToItsLimitAndDeletesThem) {
+    constexpr std::size_t worlds_max = 5;
     Laboratory laboratory;
+    laboratory.set_worlds_max(worlds_max);
     parameters::Parameters small;
     small.population_size = 1;
     const auto create = [&](const std::string& name) {

@@ -1,10 +1,10 @@
 // Worlds with schedules and planned changes.
 
 #include "server/base/inline_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "server/parameters/experiment.h"
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world.h"
-#include "server/jobs/thread_pool.h"
 #include "tests/unit/simulation/events.h"
 
 #include <gmock/gmock.h>
@@ -74,7 +74,7 @@ TEST_F(ScheduleTest, AValueHoldsFromTheFirstTickOfItsGeneration) {
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.05);
     const auto changed = events<ParametersChanged>(world);
     ASSERT_EQ(changed.size(), 1u);
-    EXPECT_EQ(changed[0].by, "");
+    EXPECT_EQ(changed[0].by, base::Actor{});
     EXPECT_THAT(changed[0].names, ElementsAre("food_count", "mutation_chance"));
     EXPECT_EQ(changed[0].revision, 2u);
     EXPECT_EQ(world.parameters().revision, 2u);
@@ -237,7 +237,7 @@ class PlannedTest : public ScheduleTest {
                 .dry_run = false,
                 .expected_revision = {},
                 .at = at,
-                .by = "anna"};
+                .by = base::client_actor("anna", "evoctl", "127.0.0.1:5000")};
     }
     static parameters::PlannedMoment generation(std::uint64_t generation) {
         return {.generation = generation, .tick = {}};
@@ -277,7 +277,7 @@ TEST_F(PlannedTest, AtAGenerationItEqualsASchedule) {
     const auto changed = events<ParametersChanged>(world());
     ASSERT_EQ(changed.size(), 2u);
     EXPECT_EQ(changed[0].planned, 1u);
-    EXPECT_EQ(changed[0].by, "anna");
+    EXPECT_EQ(changed[0].by.user, "anna");
     EXPECT_THAT(changed[1].names, ElementsAre("population_size"));
 }
 
@@ -333,7 +333,7 @@ TEST_F(PlannedTest, AnInvalidChangeIsDroppedWhenDue) {
     ASSERT_EQ(dropped.size(), 2u);
     EXPECT_EQ(dropped[0].planned, 2u);
     EXPECT_EQ(dropped[1].planned, 1u);
-    EXPECT_EQ(dropped[1].by, "anna");
+    EXPECT_EQ(dropped[1].by.user, "anna");
     EXPECT_FALSE(dropped[0].violations.empty());
 }
 

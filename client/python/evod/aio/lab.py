@@ -711,6 +711,7 @@ class World(ParameterAttributes):
         info = await self._link.perform(plans.world_info(self.name))
         if page is None:
             page = page_link.page_of(self._lab.welcome, self._link.server, self._link.tls)
+            page_link.warn_of_other_host(self._lab.welcome, self._link.server)
         return page_link.link_of(page, info, generation, tick, island, organism, live)
 
     async def snapshot(self, island: int = 0, *, genes: bool = False) -> Snapshot:

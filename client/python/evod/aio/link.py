@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 import socket
 import ssl
 import time
@@ -44,6 +45,20 @@ class Link:
         self._backoff = transport.Backoff()
         self._waiters: set[asyncio.Future[None]] = set()  # completed after each change of the core
         self._connection_task: asyncio.Task[None] | None = None
+        self._process = os.getpid()
+
+    @property
+    def is_of_this_process(self) -> bool:
+        """Whether this process has created the connection. A forked process has neither its event loop nor its thread, and
+        must not write to the socket of its parent."""
+        return os.getpid() == self._process
+
+    def require_own_process(self) -> None:
+        """Raises NoConnection in a forked process."""
+        if not self.is_of_this_process:
+            raise NoConnection(
+                "another process has created this Lab, and a forked process cannot use it: call connect() in each process"
+            )
 
     @property
     def tls(self) -> bool:
@@ -56,9 +71,10 @@ class Link:
         """Executes a plan and returns its result.
 
         Raises every exception that the plan raises. Raises Timeout if an answer does not arrive within the timeout, and
-        NoConnection if the server cannot be reached within it.
+        NoConnection if the server cannot be reached within it, and in a forked process.
         """
         try:
+            self.require_own_process()
             step = next(plan)
             while True:
                 try:
@@ -72,12 +88,14 @@ class Link:
             return value
         finally:
             plan.close()
-            self._flush()
+            if self.is_of_this_process:
+                self._flush()
 
     async def apply(self, change: Callable[[], None]) -> None:
         """Calls a function that changes the core, and sends the resulting bytes. Does not wait for an answer."""
-        change()
-        self._flush()
+        if self.is_of_this_process:
+            change()
+            self._flush()
 
     async def _do(self, step: plans.Step) -> c.Response | None:
         if isinstance(step, plans.Until):
@@ -142,7 +160,9 @@ class Link:
             raise
 
     async def close(self) -> None:
-        """Closes the connection. All waiting calls raise NoConnection."""
+        """Closes the connection. All waiting calls raise NoConnection. Does nothing in a forked process."""
+        if not self.is_of_this_process:
+            return
         if self.core.failed is None:
             self.core.close()
         self._wake_waiters()
@@ -159,7 +179,7 @@ class Link:
                 loss = transport.connection_error(error, self.server)
                 if isinstance(error, ssl.SSLCertVerificationError):
                     self.core.failed = loss
-                self._backoff.failed()
+                self._backoff.failed(self.core.retry_late)
                 self.core.lost(loss)
                 self._wake_waiters()
             except Exception as error:  # a bug in this package: all waiting calls fail, so that they do not hang

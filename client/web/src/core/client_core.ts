@@ -7,12 +7,13 @@
 //
 // After a reconnect the core sends its Hello, subscribes again, and repeats every unanswered request with the same
 // client_key and request_id. The repetition is idempotent, because the server has a reply cache: it applies each
-// command once.
+// command once. Requests that contain an id of their session fail with it: those about subscriptions, exports and
+// replays.
 //
 // Bounds       Requests beyond the server's limit are queued here. Every snapshot of a subscription with
 //              unacknowledged_max has to be passed to acknowledge(), after it was drawn or dropped.
 import type { Message } from "../messages";
-import { DamagedData, InvalidMessage } from "./errors";
+import { DamagedData, InvalidMessage, SessionEnded } from "./errors";
 import { control_channel, encode_frame, FrameReader } from "./frames";
 import { Schema } from "./protobuf";
 import type { Snapshot } from "./snapshot";
@@ -24,6 +25,9 @@ const control_frame_bytes_max = 1 << 20; // until the server has stated its limi
 
 /** Requests that contain an id which is valid only in its session. They fail when the session ends. */
 const session_requests = new Set(["unsubscribe", "request_keyframe", "set_view", "continue_export"]);
+
+/** A Goodbye with one of these codes ends the client: another session would end for the same reason. */
+const final_codes = new Set(["CODE_UNAUTHENTICATED", "CODE_PERMISSION_DENIED", "CODE_INVALID_ARGUMENT"]);
 
 export type CoreEvent =
   | { kind: "opened"; welcome: Message } // there is a session
@@ -64,6 +68,7 @@ export interface CoreOptions {
 
 interface Pending {
   kind: string;
+  ends_with_session: boolean;
   frame: Uint8Array;
   sent: boolean; // in this session
 }
@@ -77,8 +82,9 @@ interface StreamState {
 
 /** What a subscription to snapshots needs besides its public fields. */
 interface ViewState {
-  sent: Message | undefined; // the view that the server has or will have
-  request_id: number | null; // of the unanswered SetView
+  wanted: Message | null; // the newest view of set_view(), if it was not sent
+  sent: Message | null; // the view in the unanswered SetView
+  request_id: number | null; // of that SetView
 }
 
 export class ClientCore {
@@ -88,6 +94,7 @@ export class ClientCore {
   connected = false; // the server has sent its Welcome on the current connection
   failed: Loss | null = null; // why reconnecting is pointless; null: connect again
   loss: Loss | null = null; // why there is no session at present
+  retry_late = false; // the server is full: connect again only after the longest wait
   damaged_snapshot_count = 0;
 
   private readonly hello: Message;
@@ -101,6 +108,8 @@ export class ClientCore {
   private readonly in_flight = new Set<number>(); // unanswered requests of this session, even if no caller waits
   private readonly own = new Set<number>(); // ids of the requests of this core itself
   private readonly abandoned_replays = new Set<number>(); // unanswered OpenReplay requests whose callers no longer wait
+  private readonly own_replays = new Set<string>(); // names of the replays that this session has opened
+  private readonly ended_replays = new Set<string>(); // names of the replays that earlier sessions have opened
   private readonly subscriptions = new Set<Subscription>();
   private readonly of_server_id = new Map<number, Subscription>();
   private readonly streams = new Map<string, StreamState>(); // key: server_id and island
@@ -123,6 +132,7 @@ export class ClientCore {
   opened(): void {
     this.queued = [];
     this.reader = new FrameReader();
+    this.retry_late = false;
     this.send({ hello: this.hello });
   }
 
@@ -169,10 +179,18 @@ export class ClientCore {
     for (const subscription of this.subscriptions) {
       subscription.server_id = subscription.request_id = null;
     }
-    this.views.clear();
+    for (const view of this.views.values()) {
+      view.wanted ??= view.sent; // whether the server accepts it is not known
+      view.sent = view.request_id = null;
+    }
+    for (const replay of this.own_replays) {
+      this.ended_replays.add(replay);
+    }
+    this.own_replays.clear();
+    const had_session = this.welcome !== null;
     for (const [id, pending] of [...this.pending]) {
       const subscribes = pending.kind.startsWith("subscribe_");
-      if (this.failed !== null || subscribes || session_requests.has(pending.kind)) {
+      if (this.failed !== null || subscribes || (had_session && pending.ends_with_session)) {
         this.pending.delete(id);
         this.first.delete(id);
         if (!subscribes && !this.own.has(id)) { // the Subscription continues
@@ -212,13 +230,21 @@ export class ClientCore {
    *  session. Returns its request_id, which names it in the "response" or "failed" event.
    *
    *  first: send it before the requests that wait. Throws InvalidMessage if the request does not fit its type or is too
-   *  long, or if `failed` is set. */
+   *  long, or if `failed` is set. Throws SessionEnded if it contains an id of a session and there is none, or if it names
+   *  a replay of an earlier session. */
   request(request: Message, first = false): number {
     if (this.failed !== null) {
       throw new InvalidMessage(this.failed.message);
     }
-    const id = this.last_request_id + 1;
-    const kind = Object.keys(request).find((field) => request[field] !== undefined && request[field] !== null) ?? "";
+    const id = this.last_request_id + 1, kind = kind_of(request), replay = replay_in(request);
+    const ends_with_session = session_requests.has(kind) || replay !== "";
+    if (this.ended_replays.has(replay)) {
+      const status = replay_has_ended(replay);
+      throw new SessionEnded(status.message, status);
+    }
+    if (this.loss !== null && this.welcome !== null && ends_with_session) {
+      throw new SessionEnded(this.loss.message, null);
+    }
     const body = this.schema.encode("evod.v1.ClientMessage",
                                     { request: { ...request, request_id: id, client_key: this.client_key } });
     const limit: number = this.welcome?.limits?.control_frame_bytes_max ?? control_frame_bytes_max;
@@ -226,7 +252,7 @@ export class ClientCore {
       throw new InvalidMessage(`the request is ${body.length} bytes long, allowed: at most ${limit}`);
     }
     this.last_request_id = id;
-    this.pending.set(id, { kind, frame: encode_frame(body), sent: false });
+    this.pending.set(id, { kind, ends_with_session, frame: encode_frame(body), sent: false });
     if (first) {
       this.first.add(id);
     }
@@ -279,8 +305,12 @@ export class ClientCore {
   /** Changes the view of a subscription to snapshots that began with one. At most one change is in flight; further ones
    *  replace each other until it is answered. */
   set_view(subscription: Subscription, view: Message): void {
-    subscription.request.subscribe_snapshots.view = view;
-    this.send_view(subscription);
+    if (!subscription.ended) {
+      const state = this.views.get(subscription) ?? { wanted: null, sent: null, request_id: null };
+      state.wanted = view;
+      this.views.set(subscription, state);
+      this.send_view(subscription);
+    }
   }
 
   /** Acknowledges a snapshot, so that the server can send another one. Does nothing if its session or subscription has
@@ -349,7 +379,8 @@ export class ClientCore {
       this.take_event(message.event);
     } else if (message.goodbye !== undefined) {
       const loss = loss_of(message.goodbye.status);
-      if (loss.code === "CODE_UNAUTHENTICATED") {
+      this.retry_late = loss.code === "CODE_RESOURCE_EXHAUSTED";
+      if (final_codes.has(loss.code)) {
         this.failed = loss;
       }
       this.close_connection(loss);
@@ -360,6 +391,7 @@ export class ClientCore {
     if (message.goodbye !== undefined) {
       const loss = loss_of(message.goodbye.status);
       const refused = { message: `the server at ${this.server} refused this client: ${loss.message}`, code: loss.code };
+      this.retry_late = loss.code === "CODE_RESOURCE_EXHAUSTED";
       if (loss.code !== "CODE_RESOURCE_EXHAUSTED" && loss.code !== "CODE_UNAVAILABLE") {
         this.failed = refused;
       }
@@ -377,13 +409,13 @@ export class ClientCore {
       return;
     }
     this.welcome = message.welcome;
-    this.connected = true;
     this.loss = null;
     this.events.push({ kind: "opened", welcome: message.welcome });
-    // Subscriptions are sent first, so that subscribers receive the events that the other requests cause.
+    // All subscriptions are sent first, so that subscribers receive the events that the other requests cause.
     for (const subscription of this.subscriptions) {
       this.resubscribe(subscription);
     }
+    this.connected = true;
     this.send_waiting();
   }
 
@@ -397,6 +429,10 @@ export class ClientCore {
     const pending = this.pending.get(id);
     if (pending !== undefined && pending.sent) {
       this.pending.delete(id);
+      if (pending.kind === "open_replay" && response.world !== undefined) {
+        this.own_replays.add(response.world.name);
+        this.ended_replays.delete(response.world.name);
+      }
       if (pending.kind.startsWith("subscribe_")) {
         this.take_subscription(id, pending, response);
       } else if (this.own.delete(id)) {
@@ -409,10 +445,12 @@ export class ClientCore {
   }
 
   private resubscribe(subscription: Subscription): void {
-    subscription.request_id = this.request(subscription.request, true);
-    const snapshots: Message | undefined = subscription.request.subscribe_snapshots;
-    if (snapshots?.view !== undefined) {
-      this.views.set(subscription, { sent: snapshots.view, request_id: null });
+    const replay = replay_in(subscription.request);
+    if (this.ended_replays.has(replay) || (replay !== "" && subscription.sessions > 0)) {
+      subscription.refused = replay_has_ended(replay);
+      this.events.push({ kind: "subscription_refused", subscription, status: subscription.refused });
+    } else {
+      subscription.request_id = this.request(subscription.request, true);
     }
   }
 
@@ -454,24 +492,27 @@ export class ClientCore {
     }
   }
 
-  /** Sends the view of a subscription if the server does not have it and no other change is in flight. */
+  /** Sends the wanted view of a subscription if there is one and no other change is in flight. */
   private send_view(subscription: Subscription): void {
-    const state = this.views.get(subscription), view: Message = subscription.request.subscribe_snapshots?.view;
-    if (state === undefined || subscription.server_id === null || state.request_id !== null || state.sent === view) {
+    const state = this.views.get(subscription);
+    if (!state?.wanted || subscription.server_id === null || state.request_id !== null) {
       return;
     }
-    state.sent = view;
-    state.request_id = this.request_silently({ set_view: { subscription_id: subscription.server_id, view } });
+    state.sent = state.wanted;
+    state.wanted = null;
+    state.request_id = this.request_silently({ set_view: { subscription_id: subscription.server_id, view: state.sent } });
   }
 
   /** Takes the response to a request of this core itself. */
   private take_own(id: number, response: Message): void {
     for (const [subscription, state] of this.views) {
       if (state.request_id === id) {
-        state.request_id = null;
         if (response.status?.code !== undefined) {
           this.events.push({ kind: "view_refused", subscription, status: response.status });
+        } else {
+          subscription.request.subscribe_snapshots.view = state.sent; // later sessions request it, too
         }
+        state.sent = state.request_id = null;
         this.send_view(subscription);
       }
     }
@@ -522,6 +563,29 @@ export class ClientCore {
     }
     this.send_acknowledgement(server_id, island, frame.sequence ?? 0);
   }
+}
+
+/** Whether a name is that of a replay, which ends with its session: "default@3". */
+export function is_name_of_replay(world: string): boolean {
+  return world.includes("@");
+}
+
+/** Returns the field of a Request that is set. */
+function kind_of(request: Message): string {
+  return Object.keys(request).find((field) => request[field] !== undefined && request[field] !== null) ?? "";
+}
+
+/** Returns the name of the replay that a request names as its world: "default@3"; "" if it names none.
+ *
+ *  A replay ends with its session. Another session may use the name for another replay. */
+function replay_in(request: Message): string {
+  const world: unknown = request[kind_of(request)]?.world;
+  return typeof world === "string" && is_name_of_replay(world) ? world : "";
+}
+
+/** Returns the Status for a replay of an earlier session, as the server states it if it does not know the replay. */
+function replay_has_ended(replay: string): { code: string; reason: string; message: string } {
+  return { code: "CODE_NOT_FOUND", reason: "REASON_WORLD_NOT_FOUND", message: `the replay ${replay} has ended with its session` };
 }
 
 /** Returns the reason in a Status. */

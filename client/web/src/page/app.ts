@@ -16,8 +16,9 @@ import { Banners, Notices, type Banner } from "./notices";
 import { PaneArea } from "./pane_area";
 import type { Server } from "./server";
 import { of_browser } from "./storage";
-import { storage_text } from "./texts";
+import { session_text, storage_text } from "./texts";
 import { theme_button } from "./theme";
+import type { Tokens } from "./tokens";
 import { Tools } from "./tools";
 import { ViewedWorld } from "./world";
 
@@ -39,7 +40,7 @@ export class App implements PanelContext {
   #curve: FitnessCurve;
   #show_column: HTMLButtonElement;
 
-  constructor(readonly server: Server) {
+  constructor(readonly server: Server, private readonly tokens: Tokens) {
     this.#empty = h("div", { class: "empty" }, h("p", {}, "The server has no world yet."),
       h("button", { type: "button", class: "button button-primary", onclick: () => this.open("worlds", { create: true }) }, "New world …"));
     this.#worlds = h("main", { class: "worlds", id: "worlds", tabindex: -1 });
@@ -64,6 +65,11 @@ export class App implements PanelContext {
   /** Shows the moment that the fragment of an address names; does nothing if it names none. */
   follow_link(hash: string): void {
     void this.#link.follow(hash);
+  }
+
+  /** Shows the present state. */
+  refresh(): void {
+    this.#refresh();
   }
 
   // ---- PanelContext ----
@@ -289,13 +295,28 @@ export class App implements PanelContext {
     }
   }
 
+  /** Asks whether to use the token of a link. */
+  #other_token(): Banner[] {
+    const { server, tokens } = this;
+    if (tokens.offered === null || server.state.phase !== "open") {
+      return [];
+    }
+    const use = (): void => server.connect(tokens.use(tokens.offered!)), keep = (): void => {
+      tokens.decline();
+      this.#refresh();
+    };
+    return [{ name: "token", kind: "warn", text: `The link contains another token. You are connected as ${session_text(server.state.welcome)}.`,
+      actions: [{ label: "Use the token of the link", act: use }, { label: "Keep mine", act: keep }] }];
+  }
+
   #wrong(): Banner[] {
     const { server } = this, { phase, message } = server.state, storage = storage_text(server.storage);
     const reload = { label: "Reload", act: () => location.reload() };
     return [
       ...(phase === "lost" || phase === "connecting" ? [{ name: "lost", kind: "bad" as const, text: server.going_away ? "The server has shut down. Trying again …" : `${message || "Connecting"}. Trying again …` }] : []),
       ...(phase === "open" && server.going_away ? [{ name: "going", kind: "warn" as const, text: "The server is shutting down." }] : []),
-      ...(server.updated ? [{ name: "updated", kind: "warn" as const, text: "The server was updated: reload the page.", action: reload }] : []),
+      ...(server.updated ? [{ name: "updated", kind: "warn" as const, text: "The server was updated: reload the page.", actions: [reload] }] : []),
+      ...this.#other_token(),
       ...this.#link.banners(),
       ...(storage ? [{ name: "storage", kind: "bad" as const, text: storage }] : []),
     ];

@@ -6,6 +6,7 @@ import { Legend } from "./legend";
 import { RunBar } from "./run_bar";
 import { of_browser } from "./storage";
 import type { Server } from "./server";
+import { session_text } from "./texts";
 import type { Tools } from "./tools";
 import type { Panel, PanelContext } from "../panels/panel";
 
@@ -29,6 +30,7 @@ export class Column {
   #part: HTMLInputElement;
   #part_row: HTMLElement;
   #part_text = h("span", { class: "hint grow" });
+  #session = h("span", { class: "hint session", title: "The user and the role of this session" });
   #tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Panels" });
   #body = h("div", { class: "panel-body" });
   #shown: Panel | null = null;
@@ -38,7 +40,7 @@ export class Column {
     this.panels = panels;
     this.#run_bar = new RunBar(context);
     this.#part = h("input", { type: "checkbox", role: "switch", onchange: () => server.set_taking_part(this.#part.checked) });
-    this.#part_row = h("div", { class: "row part" }, h("label", { class: "check" }, this.#part, "Take part"), this.#part_text);
+    this.#part_row = h("div", { class: "row part" }, h("label", { class: "check" }, this.#part, "Take part"), this.#part_text, this.#session);
     for (let i = 0; i < named; ++i) {
       this.#buttons.push(h("button", { type: "button", class: "link", onclick: () => this.#select_healthiest(i) }));
     }
@@ -106,6 +108,7 @@ export class Column {
     this.#part.checked = server.taking_part;
     this.#part.disabled = !server.may_take_part;
     set_text(this.#part_text, this.#part_sentence());
+    set_text(this.#session, this.server.state.phase === "open" ? session_text(this.server.state.welcome) : "");
     this.tools.refresh(server.taking_part);
     if (this.#shown) {
       this.#shown.refresh();

@@ -19,7 +19,7 @@ export class LinkFollower {
 
   banners(): Banner[] {
     const action = { label: "Close", act: () => this.#say([]) };
-    return this.#wrong === "" ? [] : [{ name: "link", kind: "warn", text: this.#wrong, action }];
+    return this.#wrong === "" ? [] : [{ name: "link", kind: "warn", text: this.#wrong, actions: [action] }];
   }
 
   /** Shows what the link names in the pane with the focus. A later link ends an earlier one. */

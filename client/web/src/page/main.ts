@@ -3,6 +3,8 @@ import { App } from "./app";
 import { show_icon } from "./icon";
 import { Server } from "./server";
 import { Start, take_token } from "./start";
+import { of_tab } from "./storage";
+import { Tokens } from "./tokens";
 
 declare const trustedTypes: { createPolicy(name: string, rules: { createScriptURL(url: string): string }): { createScriptURL(url: string): string } } | undefined;
 
@@ -23,7 +25,7 @@ function start_worker(): Worker {
 
 async function run(): Promise<void> {
   show_icon();
-  const token = take_token(), start = new Start();
+  const linked = take_token(), tokens = new Tokens(of_tab), start = new Start();
   document.body.append(start.element);
   if (typeof OffscreenCanvas === "undefined") {
     start.fail("This browser is too old: the page needs Chrome 111, Firefox 121, Safari 17 or a newer one.");
@@ -43,15 +45,30 @@ async function run(): Promise<void> {
   }
   const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`;
   const server = new Server(worker, descriptor, url);
-  start.follow(server);
+  let app: App | null = null, state = server.state;
+  server.on_change(() => {
+    if (server.state === state) {
+      return;
+    }
+    state = server.state;
+    if (state.phase === "open") {
+      tokens.opened();
+    } else if (state.phase === "refused" && state.code === "CODE_UNAUTHENTICATED") {
+      const other = tokens.refused();
+      if (other !== null) {
+        app?.notify(state.message);
+        server.connect(other);
+      }
+    }
+  });
+  start.follow(server, tokens);
   worker.addEventListener("error", (event) => start.fail(`The page has failed: ${event.message || "its worker cannot be started"}`));
   const show_visibility = (): void => server.post({ kind: "visible", visible: document.visibilityState !== "hidden" });
   document.addEventListener("visibilitychange", show_visibility);
   show_visibility();
-  let app: App | null = null;
   server.on_change(() => {
     if (server.state.phase === "open" && server.worlds_known) {
-      app ??= new App(server);
+      app ??= new App(server, tokens);
       Object.assign(globalThis, { evod: { server, app } }); // for tests and for the console of the browser
       if (!app.element.isConnected) {
         start.element.replaceWith(app.element);
@@ -61,13 +78,14 @@ async function run(): Promise<void> {
     }
   });
   addEventListener("hashchange", () => {
-    const { hash } = location, new_token = take_token();
-    if (location.hash !== hash) {
-      server.connect(new_token); // the link contained a token
+    const followed = take_token(), token = followed === null ? null : tokens.follow(followed);
+    if (token !== null) {
+      server.connect(token);
     }
     app?.follow_link(location.hash);
+    app?.refresh();
   });
-  server.connect(token);
+  server.connect(tokens.begin(linked));
 }
 
 void run();

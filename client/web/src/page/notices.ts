@@ -32,7 +32,7 @@ export interface Banner {
   name: string; // "lost"
   kind: "bad" | "warn";
   text: string;
-  action?: { label: string; act: () => void };
+  actions?: { label: string; act: () => void }[];
 }
 
 export class Banners {
@@ -51,7 +51,7 @@ export class Banners {
       let element = this.#shown.get(banner.name);
       if (!element) {
         element = h("div", { class: "banner", "data-kind": banner.kind }, h("span", {}),
-          banner.action && h("button", { type: "button", class: "button", onclick: banner.action.act }, banner.action.label));
+          ...(banner.actions ?? []).map(({ label, act }) => h("button", { type: "button", class: "button", onclick: act }, label)));
         this.#shown.set(banner.name, element);
         this.element.append(element);
       }

@@ -160,3 +160,11 @@ export function experiment_text(set: Message): string {
     : `Each loses ${number("health_loss_per_s")} health per second${has_gene_costs ? ", more or less with its genes," : ""} and dies at 0.`;
   return `${text} Fitness ${fitness}. ${selection_text(choice("selection"), values.get("shuffle_fitness")?.flag === true)}`;
 }
+
+/** The user and the role of a session: "vera (viewer)".
+ *
+ *  welcome  session.proto Welcome */
+export function session_text(welcome: Message | null): string {
+  const user: string = welcome?.user || "no token", role: string = welcome?.role ?? "ROLE_VIEWER";
+  return `${user} (${role.replace("ROLE_", "").toLowerCase()})`;
+}

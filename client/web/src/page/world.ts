@@ -345,12 +345,15 @@ export class ViewedWorld {
       if (number !== this.#seek_number || (error instanceof Refusal && error.reason === "REASON_SEEK_SUPERSEDED")) {
         return;
       }
+      if (this.#replay && this.server.state.phase !== "open") {
+        return; // the replay has ended with its session; the next session opens it again at this moment
+      }
       if (!this.#replay) {
         this.#moment = null;
       }
       throw error;
     } finally {
-      if (number === this.#seek_number) {
+      if (number === this.#seek_number && this.server.state.phase === "open") {
         this.opening = false;
         this.#changes.notify();
       }
