@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -20,6 +21,9 @@ using google::protobuf::Message;
 /// Widgets compute with the difference of two limits, so half of the largest number is the most that they can use.
 constexpr double limit_max = std::numeric_limits<double>::max() / 2;
 
+/// The sum of three counts is the end of a slider, which must be less than 2^30.
+constexpr std::uint32_t count_max = 1U << 28;
+
 /// Whether all numbers of a field are allowed. True for fields of other types.
 template <class IsAllowed>
 bool are_allowed(const Message& message, const FieldDescriptor& field, const IsAllowed& is_allowed) {
@@ -32,6 +36,9 @@ bool are_allowed(const Message& message, const FieldDescriptor& field, const IsA
     case FieldDescriptor::CPPTYPE_FLOAT:
         return field.is_repeated() ? all_allowed(reflection.GetRepeatedFieldRef<float>(message, &field))
                                    : is_allowed(reflection.GetFloat(message, &field));
+    case FieldDescriptor::CPPTYPE_UINT32:
+        return field.is_repeated() || !field.name().ends_with("_count") ||
+               reflection.GetUInt32(message, &field) <= count_max;
     default:
         return true;
     }

@@ -1,6 +1,27 @@
 #include "client/core/page_link.h"
 
+#include <algorithm>
+
 namespace evod::core {
+
+namespace {
+
+/// Whether a text is the name or address of a host. A URL with other characters could lead elsewhere than it seems.
+bool is_host(std::string_view text) {
+    return std::ranges::all_of(text, [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+               std::string_view{"._:%-"}.find(c) != std::string_view::npos;
+    });
+}
+
+} // namespace
+
+bool fits_into_url(std::string_view text) {
+    return std::ranges::none_of(text, [](unsigned char character) {
+        return character <= ' ' || character >= 0x7f ||
+               std::string_view{"#\"<>\\^`{|}"}.find(static_cast<char>(character)) != std::string_view::npos;
+    });
+}
 
 PageMoment moment_of(const evod::v1::WorldInfo& world) {
     const std::string& original = world.replay().replay_of();
@@ -10,12 +31,16 @@ PageMoment moment_of(const evod::v1::WorldInfo& world) {
 }
 
 std::string page_of(const evod::v1::Welcome& welcome, const Endpoint& server, bool tls) {
-    if (welcome.page_port() == 0) {
+    if (welcome.page_port() == 0 || !is_host(welcome.page_host())) {
         return "";
     }
     const Endpoint page{.host = welcome.page_host().empty() ? server.host : welcome.page_host(),
                         .port = static_cast<std::uint16_t>(welcome.page_port())};
     return (tls ? "https://" : "http://") + to_text(page) + "/";
+}
+
+std::string other_page_host(const evod::v1::Welcome& welcome, const Endpoint& server) {
+    return welcome.page_host() == server.host ? "" : welcome.page_host();
 }
 
 std::string link_of(const std::string& page, const PageMoment& moment) {

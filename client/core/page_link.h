@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace evod::core {
 
@@ -21,10 +22,17 @@ struct PageMoment {
 /// The present moment of a world. For a replay: the moment that it shows of its original.
 PageMoment moment_of(const evod::v1::WorldInfo& world);
 
-/// The page of a server, such as "http://lab:7745/". Empty if there is none that this client can reach.
+/// Whether a URL can contain all characters of a text, which may come from a server.
+bool fits_into_url(std::string_view text);
+
+/// The page of a server, such as "http://lab:7745/". Empty if there is none that this client can reach, or if its host is
+/// not one.
 ///
 /// server, tls  how this client is connected.
 std::string page_of(const evod::v1::Welcome& welcome, const Endpoint& server, bool tls);
+
+/// The host of the page if it is another one than that to which this client has connected. Empty: it is the same.
+std::string other_page_host(const evod::v1::Welcome& welcome, const Endpoint& server);
 
 /// "http://lab:7745/#world=default&generation=12&tick=600&island=0&organism=7". Never contains a token.
 std::string link_of(const std::string& page, const PageMoment& moment);

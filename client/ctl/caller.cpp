@@ -99,6 +99,7 @@ Caller::Caller(const Common& common) : timeout_{common.timeout()} {
     }
     welcome_ = *std::move(welcome);
     page_ = core::page_of(welcome_, options.server, options.tls.has_value());
+    other_page_host_ = core::other_page_host(welcome_, options.server);
 }
 
 v1::Response Caller::call(v1::Request request, std::optional<std::chrono::milliseconds> timeout) {

@@ -65,13 +65,15 @@ class Caller {
     const v1::Welcome& welcome() const { return welcome_; }
     /// The address of the server's page, such as "http://lab:7745/". Empty if there is none that this machine can reach.
     const std::string& page() const { return page_; }
+    /// The host of the page if it is another one than that of --server; else empty.
+    const std::string& other_page_host() const { return other_page_host_; }
     std::chrono::milliseconds timeout() const { return timeout_; }
 
   private:
     std::chrono::milliseconds timeout_;
     std::unique_ptr<core::Connection> connection_;
     v1::Welcome welcome_;
-    std::string page_;
+    std::string page_, other_page_host_;
 };
 
 /// Prints a reply: as JSON if --json was given, otherwise as the result of `text()`.

@@ -3,11 +3,9 @@
 #include "client/ctl/caller.h"
 #include "proto/command_line/command.h"
 
-#include <algorithm>
 #include <iostream>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace evod::ctl {
 
@@ -20,14 +18,9 @@ struct LinkOptions {
     std::string page; // empty: the page of the server
 };
 
-bool is_wrong_in_url(unsigned char character) {
-    return character <= ' ' || character >= 0x7f ||
-           std::string_view{"#\"<>\\^`{|}"}.find(static_cast<char>(character)) != std::string_view::npos;
-}
-
 std::string check_page(const std::string& word) {
     const bool is_url = word.starts_with("http://") || word.starts_with("https://");
-    return is_url && std::ranges::none_of(word, is_wrong_in_url)
+    return is_url && core::fits_into_url(word)
                ? ""
                : "got " + word + ", allowed a URL without #, such as https://evod.example.org/";
 }
@@ -53,11 +46,12 @@ void link(const Common& common, const LinkOptions& options) {
         throw Stop{ExitCode::Refused, "this server has no page that this machine can reach: start it with --web and, "
                                       "for other machines, --http-bind; or give the page's address with --page"};
     }
-    // The names of host and world come from the server.
-    if (std::ranges::any_of(page, is_wrong_in_url) || std::ranges::any_of(world.name(), is_wrong_in_url) ||
-        std::ranges::any_of(world.replay().replay_of(), is_wrong_in_url)) {
-        throw Stop{ExitCode::Refused,
-                   "the server reports a name of its page or of the world that a URL cannot contain"};
+    if (!core::fits_into_url(world.name()) || !core::fits_into_url(world.replay().replay_of())) {
+        throw Stop{ExitCode::Refused, "the server reports a name of the world that a URL cannot contain"};
+    }
+    if (options.page.empty() && !caller.other_page_host().empty()) {
+        std::cerr << "evoctl: the server reports that its page is at another host: " << caller.other_page_host()
+                  << '\n';
     }
     page += page.ends_with('/') ? "" : "/";
     const core::PageMoment present = core::moment_of(world);

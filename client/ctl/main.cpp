@@ -3,6 +3,7 @@
 #include "client/ctl/refusal.h"
 #include "client/ctl/text.h"
 #include "proto/command_line/completion.h"
+#include "proto/command_line/exhaustion.h"
 #include "proto/command_line/terminal.h"
 
 #include <unistd.h>
@@ -49,6 +50,7 @@ void report(const Stop& stop, const Common& common, const evod::command_line::Co
 } // namespace
 
 int main(int argc, char** argv) {
+    evod::command_line::end_when_exhausted("evoctl: out of memory or threads\n", static_cast<int>(ExitCode::Refused));
     Common common;
     evod::command_line::Command app{"evoctl", "evoctl: sends one command to an evod server", "evoctl " EVOD_VERSION};
     app.add_option("--world", &common.world,

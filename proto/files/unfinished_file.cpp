@@ -21,13 +21,18 @@ struct Name {
     std::atomic<bool> taken = false, complete = false;
     std::array<char, PATH_MAX> path{};
 };
-std::array<Name, 16> names;
+std::array<Name, 32> names;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler reads it");
 
 void delete_and_end(int signal) {
     for (const Name& name : names) {
         if (name.complete) {
             ::unlink(name.path.data());
+        }
+    }
+    for (const Name& name : names) {
+        if (name.complete) {
+            ::rmdir(name.path.data()); // fails for a folder with other files, and for what unlink() has deleted
         }
     }
     std::signal(signal, SIG_DFL);
@@ -68,6 +73,20 @@ void remove_name(int index) {
 
 } // namespace
 
+DeletedBySignals::DeletedBySignals(const std::vector<std::string>& paths) {
+    static std::once_flag once;
+    std::call_once(once, handle_signals);
+    for (const std::string& path : paths) {
+        indices_.push_back(add_name(path));
+    }
+}
+
+DeletedBySignals::~DeletedBySignals() {
+    for (const int index : indices_) {
+        remove_name(index);
+    }
+}
+
 UnfinishedFile::UnfinishedFile(std::string path) : path_{std::move(path)}, temporary_path_{path_ + ".part"} {
     std::error_code error;
     if (std::filesystem::is_symlink(path_, error)) { // renaming would replace the link
@@ -83,10 +102,8 @@ UnfinishedFile::UnfinishedFile(std::string path) : path_{std::move(path)}, tempo
         stream_.setstate(std::ios::failbit); // a file that may not be written must not be replaced either
         return;
     } else {
-        static std::once_flag once;
-        std::call_once(once, handle_signals);
         ::unlink(temporary_path_.c_str());
-        deleted_by_signals_ = add_name(temporary_path_);
+        deleted_by_signals_.emplace(std::vector{temporary_path_});
     }
     stream_.open(temporary_path_, std::ios::binary);
 }
@@ -96,7 +113,6 @@ UnfinishedFile::~UnfinishedFile() {
         stream_.close();
         ::unlink(temporary_path_.c_str());
     }
-    remove_name(deleted_by_signals_);
 }
 
 bool UnfinishedFile::finish() {

@@ -4,14 +4,30 @@
 // end the program, unless the program handles them itself. After SIGKILL, NAME.part remains, and the next file with this
 // name replaces it. A pipe or a device, such as /dev/stdout, is written directly.
 //
-// Threads  one at a time for each object. Signals delete the files of at most 16 objects.
+// Threads  one at a time for each object.
 #pragma once
 
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace evod::files {
+
+/// Files and empty folders that SIGINT, SIGTERM and SIGHUP delete before they end the program, as long as the object exists.
+/// Folders are deleted after all files. Objects of this type and unfinished files together can have 32 names; further ones
+/// are not deleted.
+class DeletedBySignals {
+  public:
+    explicit DeletedBySignals(const std::vector<std::string>& paths);
+    DeletedBySignals(const DeletedBySignals&) = delete;
+    DeletedBySignals& operator=(const DeletedBySignals&) = delete;
+    ~DeletedBySignals();
+
+  private:
+    std::vector<int> indices_; // in the list of names
+};
 
 class UnfinishedFile {
   public:
@@ -31,7 +47,7 @@ class UnfinishedFile {
   private:
     std::string path_, temporary_path_;
     std::ofstream stream_;
-    int deleted_by_signals_ = -1; // index in the list of names; -1: not in the list
+    std::optional<DeletedBySignals> deleted_by_signals_; // nullopt: the file has its name from the beginning
 };
 
 } // namespace evod::files

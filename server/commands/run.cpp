@@ -1,5 +1,6 @@
 // `evod run`: runs one experiment from beginning to end without a network.
 #include "proto/command_line/command.h"
+#include "proto/files/unfinished_file.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
@@ -22,7 +23,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -238,18 +238,25 @@ class Output {
         return flush_csv();
     }
 
+    /// Gives the CSV file its name. Called at the end of the run, also of one that was interrupted.
+    base::Result<void> finish() {
+        return !csv_ || csv_->finish() ? base::Result<void>{} : cannot_write_csv(std::strerror(errno));
+    }
+
   private:
     /// Creates the CSV file, and writes the rows of the stored generations.
     base::Result<void> open_csv(const Recording& recording) {
         if (csv_path_.empty()) {
             return {};
         }
+        csv_.emplace(csv_path_);
+        if (!csv_->stream()) {
+            return cannot_write_csv(std::strerror(errno));
+        }
         errno = 0;
-        csv_.open(csv_path_);
-        table_.emplace(csv_, replay::Table::Format::Csv, replay::statistics_columns(gene_names_));
-        if (!csv_.flush()) {
-            return refusal(base::RefusalCode::FailedPrecondition,
-                           "--csv: cannot write " + csv_path_ + ": " + std::strerror(errno));
+        table_.emplace(csv_->stream(), replay::Table::Format::Csv, replay::statistics_columns(gene_names_));
+        if (!csv_->stream().flush()) {
+            return cannot_write_csv(std::strerror(errno));
         }
         if (recording) {
             if (auto read = recording->read_statistics([this](const auto& generation) { add_to_csv(generation); });
@@ -267,17 +274,16 @@ class Output {
         }
     }
     base::Result<void> flush_csv() {
-        if (table_ && !csv_.flush()) {
-            return refusal(base::RefusalCode::FailedPrecondition,
-                           "--csv: cannot write " + csv_path_ + ": the disk may be full");
-        }
-        return {};
+        return !table_ || csv_->stream().flush() ? base::Result<void>{} : cannot_write_csv("the disk may be full");
+    }
+    base::Refusal cannot_write_csv(const std::string& why) const {
+        return refusal(base::RefusalCode::FailedPrecondition, "--csv: cannot write " + csv_path_ + ": " + why);
     }
 
     std::vector<std::string> gene_names_;
     bool several_islands_ = false;
     std::string csv_path_;
-    std::ofstream csv_;
+    std::optional<files::UnfinishedFile> csv_;
     std::optional<replay::Table> table_;
 };
 
@@ -413,7 +419,8 @@ int run(const RunOptions& options, const SharedWork& shared) {
         return fail(opened.error());
     }
     if (*recording && (*recording)->stored() == experiments::Stored::Whole) {
-        return 0;
+        const base::Result<void> finished = output.finish();
+        return finished ? 0 : fail(finished.error());
     }
     ComputationTime cost;
     const auto start = Clock::now();
@@ -425,6 +432,7 @@ int run(const RunOptions& options, const SharedWork& shared) {
         simulation.written = (*recording)->begin(simulation.world, runtime::draw_run_id());
     }
     simulation.run();
+    simulation.try_to([&] { return output.finish(); });
     if (!simulation.written) {
         return fail(simulation.written.error());
     }
@@ -462,7 +470,8 @@ void add_run_command(command_line::Command& app) {
         .check(command_line::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
     add_sharing_options(command, options.sharing);
     command.add_option("--set", &options.changes, "NAME=VALUE: set a parameter; evod parameters lists all parameters");
-    command.add_option("--csv", &options.csv, "CSV file to which the statistics of every generation are written");
+    command.add_option("--csv", &options.csv,
+                       "CSV file for the statistics of every generation; it has the ending .part until the run ends");
     command.add_option("--run-file", &options.run_file,
                        "Run file, NAME.evod, in which the run is stored; if it contains a part of this run, the run "
                        "continues at the beginning of the last generation in it");

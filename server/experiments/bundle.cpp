@@ -1,5 +1,6 @@
 #include "server/experiments/bundle.h"
 
+#include "proto/files/unfinished_file.h"
 #include "server/parameters/experiment.h"
 #include "server/replay/columns.h"
 #include "server/replay/rerun.h"
@@ -191,15 +192,20 @@ Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
     return write_checksums(folder);
 }
 
+/// The names of all files that a bundle can contain while it is written.
+std::set<std::string> names_in_bundle(const std::string& run_file) {
+    return {run_file,          run_file + "-journal", run_file + "-wal", run_file + "-shm",
+            "experiment.json", "population.csv",      "generations.csv", "organisms.csv",
+            "lineage.csv",     "events.csv",          "REPEAT.md",       "SHA256SUMS"};
+}
+
 /// Deletes the folder of a bundle that an ended program left unfinished. Refused if it contains other files.
 Result<void> remove_unfinished(const fs::path& part, const std::string& run_file) {
     std::error_code error;
     if (!fs::exists(fs::symlink_status(part, error))) {
         return {};
     }
-    const std::set<std::string> names{run_file,          run_file + "-journal", run_file + "-wal", run_file + "-shm",
-                                      "experiment.json", "population.csv",      "generations.csv", "organisms.csv",
-                                      "lineage.csv",     "events.csv",          "REPEAT.md",       "SHA256SUMS"};
+    const std::set<std::string> names = names_in_bundle(run_file);
     bool other = !fs::is_directory(fs::symlink_status(part, error));
     for (fs::directory_iterator file{part, error}, end; !other && !error && file != end; file.increment(error)) {
         other = !names.contains(file->path().filename().string()) || !file->is_regular_file(error);
@@ -231,6 +237,11 @@ Result<void> write_bundle(const replay::RunSource& run, const std::string& folde
     if (auto removed = remove_unfinished(part, run.file.identity().name + ".evod"); !removed) {
         return removed;
     }
+    std::vector<std::string> unfinished{part.string()};
+    for (const std::string& name : names_in_bundle(run.file.identity().name + ".evod")) {
+        unfinished.push_back((part / name).string());
+    }
+    const files::DeletedBySignals deleted_by_signals{unfinished};
     if (!fs::create_directory(part, error)) {
         return cannot_create();
     }

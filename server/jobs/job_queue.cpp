@@ -2,6 +2,7 @@
 
 #include "server/jobs/this_thread.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -17,8 +18,8 @@ JobQueue::~JobQueue() {
     {
         const std::lock_guard lock{mutex_};
         stopping_ = true;
-        for (std::stop_source& job : running_) {
-            job.request_stop();
+        for (Running& job : running_) {
+            job.stop.request_stop();
         }
     }
     changed_.notify_all();
@@ -27,11 +28,11 @@ JobQueue::~JobQueue() {
     }
 }
 
-std::stop_source JobQueue::add(Job job) {
+std::stop_source JobQueue::add(Job job, std::string user) {
     std::stop_source stop;
     {
         const std::lock_guard lock{mutex_};
-        waiting_.push_back({std::move(job), stop});
+        waiting_.add(user, {std::move(job), stop, user});
         if (waiting_.size() > idle_threads_ && threads_.size() < options_.threads_max) {
             try {
                 start_thread();
@@ -48,23 +49,28 @@ void JobQueue::start_thread() {
     ++idle_threads_;
 }
 
+bool JobQueue::may_run(const std::string& user) const {
+    const auto count = std::ranges::count(running_, user, &Running::user);
+    return static_cast<std::size_t>(count) < options_.threads_per_user_max;
+}
+
 void JobQueue::work() {
     set_up_thread(options_.name, options_.niceness);
+    const auto may = [this](const std::string& user, const Waiting&) { return may_run(user); };
     std::unique_lock lock{mutex_};
     while (true) {
-        changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+        changed_.wait(lock, [&] { return stopping_ || waiting_.has(may); });
         if (stopping_) {
             return;
         }
-        Waiting next = std::move(waiting_.front());
-        waiting_.pop_front();
+        Waiting next = *waiting_.take(may);
         --idle_threads_;
-        running_.push_back(next.stop);
+        running_.push_back({next.user, next.stop});
         lock.unlock();
         next.job(next.stop.get_token());
         next.job = {};
         lock.lock();
-        std::erase(running_, next.stop);
+        std::erase_if(running_, [&](const Running& job) { return job.stop == next.stop; });
         ++idle_threads_;
     }
 }

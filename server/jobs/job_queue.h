@@ -1,4 +1,5 @@
-// Job queue: runs background jobs in the order of their arrival, on at most threads_max threads.
+// Job queue: runs background jobs on at most threads_max threads. It serves users in turn, and the jobs of one user in the
+// order of their arrival.
 //
 // Each kind of work has its own queue, so slow jobs of one kind cannot block other kinds.
 //
@@ -8,10 +9,11 @@
 // Full         never: the caller must bound the number of jobs that it adds.
 #pragma once
 
+#include "server/base/fair_queue.h"
+
 #include <pthread.h>
 
 #include <condition_variable>
-#include <deque>
 #include <functional>
 #include <mutex>
 #include <stop_token>
@@ -29,7 +31,8 @@ class JobQueue {
     struct Options {
         std::string name; // of the threads (this_thread.h)
         std::size_t threads_max = 1;
-        int niceness = 0; // of the threads
+        std::size_t threads_per_user_max = ~std::size_t{0}; // jobs of one user that run at once
+        int niceness = 0;                                   // of the threads
     };
     /// Throws std::system_error if no thread can be started.
     explicit JobQueue(Options options);
@@ -40,9 +43,10 @@ class JobQueue {
 
     /// Adds a job.
     ///
+    /// user     whose turn it takes.
     /// returns  a handle that cancels the job. A job that is cancelled while it waits still runs, with `stop`
     ///          requested.
-    std::stop_source add(Job job);
+    std::stop_source add(Job job, std::string user = {});
     /// The first thread, for reading its CPU time.
     pthread_t handle() { return threads_.front().native_handle(); }
 
@@ -50,15 +54,21 @@ class JobQueue {
     struct Waiting {
         Job job;
         std::stop_source stop;
+        std::string user;
+    };
+    struct Running {
+        std::string user;
+        std::stop_source stop;
     };
     void work();
     void start_thread();
+    bool may_run(const std::string& user) const;
 
     const Options options_;
     std::mutex mutex_; // guards the members below
     std::condition_variable changed_;
-    std::deque<Waiting> waiting_;
-    std::vector<std::stop_source> running_;
+    base::FairQueue<Waiting> waiting_;
+    std::vector<Running> running_;
     std::size_t idle_threads_ = 0;
     bool stopping_ = false;
     std::vector<std::thread> threads_; // last member, because the threads use the members above

@@ -17,7 +17,7 @@ namespace {
 using base::RefusalCode;
 
 base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
-                                       const std::stop_token& stop) {
+                                       const base::StopCheck& stop) {
     const auto file = run.run.open();
     if (!file) {
         return file.error();
@@ -46,6 +46,17 @@ bool is_shortened(const v1::GetBreeding& request, const v1::Breeding& answer) {
            more(request.first_descendant(), answer.descendants_size(), answer.descendant_count());
 }
 
+base::Refusal export_not_wanted() {
+    return refusal(RefusalCode::FailedPrecondition, "the export was cancelled", base::Reason::ExportEnded);
+}
+
+base::Refusal export_taken_back() {
+    return refusal(RefusalCode::ResourceExhausted,
+                   "the export was cancelled, because this user had the most exports and another user needed a place: "
+                   "begin it again when another one has ended",
+                   base::Reason::ExportsMax);
+}
+
 } // namespace
 
 // ---- exports ---------------------------------------------------------------------------------------------------
@@ -53,20 +64,63 @@ bool is_shortened(const v1::GetBreeding& request, const v1::Breeding& answer) {
 void BackgroundQueries::begin_export(Session& session, std::uint64_t request_id, const replay::StoredRun& run,
                                      const replay::WantedTable& wanted) {
     if (const auto before = exports_.find(session.number()); before != exports_.end()) {
-        cancel(before);
+        cancel(before->second, export_not_wanted());
+        exports_.erase(before);
     }
-    std::erase_if(cancelled_, [](const auto& job) { return job->finished(); });
-    if (exports_.size() + cancelled_.size() >= exports_max) {
+    const std::string user = session.account();
+    if (auto taken = take_export_place(user); !taken) {
         limit_counters_.met(Limit::Exports);
-        return session.answer(protocol::refusing(
-            request_id,
-            refusal(RefusalCode::ResourceExhausted,
-                    std::to_string(exports_max) + " exports are already running: try again when one has ended",
-                    base::Reason::ExportsMax)));
+        return session.answer(protocol::refusing(request_id, taken.error()));
     }
-    session.requests.expect(static_cast<std::ptrdiff_t>(runtime::ExportJob::held_bytes));
-    Export begun{++last_export_id_, std::make_unique<runtime::ExportJob>(export_jobs_, outbox_, run, wanted)};
+    Export begun{++last_export_id_, user,
+                 std::make_unique<runtime::ExportJob>(runtime::ExportJob::Tools{export_jobs_, turns_, outbox_}, user,
+                                                      run, wanted, export_patience_),
+                 std::make_unique<HeldMemory>(session, runtime::ExportJob::held_bytes)};
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
+}
+
+base::Result<void> BackgroundQueries::take_export_place(const std::string& user) {
+    const auto full = [](std::string message) {
+        return refusal(RefusalCode::ResourceExhausted, std::move(message), base::Reason::ExportsMax);
+    };
+    give_abandoned_places_back();
+    (void)cancelled_count(); // deletes those that have ended
+    if (std::ranges::count(cancelled_, user, &CancelledExport::user) >= std::ptrdiff_t{exports_max}) {
+        return full("many exports of this user are just being cancelled: try again");
+    }
+    base::Quota& quota = export_quota_;
+    switch (quota.ask(user)) {
+    case base::Quota::Verdict::UserFull:
+        return full("this user has " + std::to_string(quota.share()) +
+                    " exports running already, half of those that may run at once: try again when one has ended");
+    case base::Quota::Verdict::PoolFull:
+        return full(std::to_string(exports_max) + " exports are already running: try again when one has ended");
+    case base::Quota::Verdict::FromLargest:
+        take_back_export();
+        break;
+    case base::Quota::Verdict::Free:
+        break;
+    }
+    quota.take(user);
+    return {};
+}
+
+std::size_t BackgroundQueries::cancelled_count() {
+    std::erase_if(cancelled_, [](const CancelledExport& item) { return item.job->finished(); });
+    return cancelled_.size();
+}
+
+void BackgroundQueries::take_back_export() {
+    const std::string user = export_quota_.largest();
+    auto oldest = exports_.end();
+    for (auto item = exports_.begin(); item != exports_.end(); ++item) {
+        if (item->second.user == user && item->second.has_place &&
+            (oldest == exports_.end() || item->second.id < oldest->second.id)) {
+            oldest = item;
+        }
+    }
+    limit_counters_.took_back(Limit::Exports);
+    cancel(oldest->second, export_taken_back());
 }
 
 void BackgroundQueries::send_next_part(Session& session, std::uint64_t request_id, const v1::ContinueExport& request) {
@@ -85,6 +139,9 @@ void BackgroundQueries::send_next_part(Session& session, std::uint64_t request_i
                                 "the previous request for a part is not answered yet: wait for its answer",
                                 base::Reason::ExportEnded)));
     }
+    if (!found->second.job) {
+        return session.answer(protocol::refusing(request_id, export_taken_back()));
+    }
     ask(session, request_id, found->second);
 }
 
@@ -93,26 +150,41 @@ void BackgroundQueries::ask(const Session& session, std::uint64_t request_id, Ex
     from.job->next({.session = session.number(), .request_id = request_id, .export_id = from.id});
 }
 
-void BackgroundQueries::cancel(Exports::iterator of) {
-    if (const SessionPtr session = find_session(sessions_, of->first)) {
-        session->requests.expect(-static_cast<std::ptrdiff_t>(runtime::ExportJob::held_bytes));
+void BackgroundQueries::cancel(Export& of, const base::Refusal& why) {
+    give_place_back(of);
+    if (of.job) {
+        of.job->cancel(why);
+        cancelled_.push_back({of.user, std::move(of.job)});
+        of.held.reset();
     }
-    of->second.job->request_stop();
-    cancelled_.push_back(std::move(of->second.job));
-    exports_.erase(of);
+}
+
+void BackgroundQueries::give_place_back(Export& of) {
+    if (std::exchange(of.has_place, false)) {
+        export_quota_.give_back(of.user);
+    }
+}
+
+void BackgroundQueries::give_abandoned_places_back() {
+    for (auto& [session, item] : exports_) {
+        if (item.job && item.job->finished()) {
+            give_place_back(item);
+        }
+    }
 }
 
 void BackgroundQueries::on_done(runtime::ExportPartDone done) {
     const runtime::PartRequest& request = done.request;
-    if (!done.part && done.part.error().code == RefusalCode::FailedPrecondition) {
-        limit_counters_.met(Limit::ExportPatience);
-    }
     // The session may have started another export in the meantime.
     if (const auto found = exports_.find(request.session);
         found != exports_.end() && found->second.id == request.export_id) {
         found->second.asked = false;
+        if (found->second.job && !done.part && done.part.error().code == RefusalCode::FailedPrecondition) {
+            limit_counters_.met(Limit::ExportPatience);
+        }
         if (!done.part || done.part->last) {
-            cancel(found);
+            cancel(found->second, export_not_wanted());
+            exports_.erase(found);
         }
     }
     const SessionPtr session = find_session(sessions_, request.session);
@@ -136,39 +208,65 @@ void BackgroundQueries::on_done(runtime::ExportPartDone done) {
 // ---- GetBreeding -----------------------------------------------------------------------------------------------
 
 void BackgroundQueries::ask_breeding(Session& session, const v1::Request& request, runtime::FoundRun run) {
-    const auto bytes = static_cast<std::ptrdiff_t>(sizeof(WaitingBreeding) + request.SpaceUsedLong());
+    const std::string user = session.account();
+    if (waiting_breedings_.count(user) >= breedings_waiting_max) {
+        limit_counters_.met(Limit::Breedings);
+        return session.answer(protocol::refusing(
+            request.request_id(),
+            refusal(RefusalCode::ResourceExhausted,
+                    std::to_string(breedings_waiting_max) + " GetBreeding of this user wait already: try again later",
+                    base::Reason::ServerBusy)));
+    }
+    const auto bytes = static_cast<std::ptrdiff_t>(sizeof(Breeding) + request.SpaceUsedLong());
     session.requests.expect(bytes);
-    waiting_breedings_.push_back(
-        {session.number(), request.request_id(), request.get_breeding(), std::move(run), bytes});
+    waiting_breedings_.add(user,
+                           std::make_shared<const Breeding>(Breeding{session.number(), user, request.request_id(),
+                                                                     request.get_breeding(), std::move(run), bytes}));
     begin_next_breeding();
 }
 
+bool BackgroundQueries::may_begin(const Breeding& breeding) const {
+    using Verdict = base::Quota::Verdict;
+    const Verdict verdict = breeding_quota_.ask(breeding.user);
+    return (verdict == Verdict::Free || verdict == Verdict::FromLargest) &&
+           std::ranges::none_of(running_breedings_,
+                                [&](const auto& item) { return item.second.breeding->session == breeding.session; });
+}
+
 void BackgroundQueries::begin_next_breeding() {
-    while (running_breedings_.size() < breedings_at_once) {
-        const auto next = std::ranges::find_if(waiting_breedings_, [&](const WaitingBreeding& breeding) {
-            return std::ranges::none_of(running_breedings_,
-                                        [&](const auto& item) { return item.second.session == breeding.session; });
-        });
-        if (next == waiting_breedings_.end()) {
-            return;
-        }
-        WaitingBreeding breeding = std::move(*next);
-        waiting_breedings_.erase(next);
-        begin(std::move(breeding));
+    const auto may = [this](const std::string& /*user*/, const BreedingPtr& breeding) { return may_begin(*breeding); };
+    while (auto next = waiting_breedings_.take(may)) {
+        begin(*std::move(next));
     }
 }
 
-void BackgroundQueries::begin(WaitingBreeding breeding) {
-    const std::uint64_t session_number = breeding.session, query = ++last_query_;
-    running_breedings_[query] = {
-        session_number, breeding.bytes,
-        breeding_jobs_.add([&outbox = outbox_, query, breeding = std::move(breeding)](const std::stop_token& stop) {
-            outbox.reply(compute(query, breeding, stop));
-        })};
+void BackgroundQueries::begin(BreedingPtr breeding) {
+    if (breeding_quota_.ask(breeding->user) == base::Quota::Verdict::FromLargest) {
+        take_back_breeding();
+    }
+    breeding_quota_.take(breeding->user);
+    const std::uint64_t query = ++last_query_;
+    auto job = [&outbox = outbox_, &turns = turns_, query, breeding](const std::stop_token& stop) {
+        runtime::JobTurns::Turn turn{turns, breeding->user, stop};
+        outbox.reply(compute(query, *breeding, turn.stop_check()));
+    };
+    running_breedings_[query] = {breeding, breeding_jobs_.add(std::move(job), breeding->user)};
 }
 
-runtime::BreedingDone BackgroundQueries::compute(std::uint64_t query, const WaitingBreeding& breeding,
-                                                 const std::stop_token& stop) {
+void BackgroundQueries::take_back_breeding() {
+    const std::string user = breeding_quota_.largest();
+    const auto last =
+        std::ranges::find_if(running_breedings_.rbegin(), running_breedings_.rend(), [&](const auto& item) {
+            return item.second.breeding->user == user && !item.second.is_taken_back;
+        });
+    limit_counters_.took_back(Limit::Breedings);
+    breeding_quota_.give_back(user);
+    last->second.is_taken_back = true;
+    last->second.stop.request_stop();
+}
+
+runtime::BreedingDone BackgroundQueries::compute(std::uint64_t query, const Breeding& breeding,
+                                                 const base::StopCheck& stop) {
     const auto bred = base::within_memory([&] { return breeding_of(breeding.request, breeding.run, stop); });
     if (!bred) {
         return {.query = query,
@@ -186,33 +284,46 @@ runtime::BreedingDone BackgroundQueries::compute(std::uint64_t query, const Wait
 }
 
 void BackgroundQueries::on_done(runtime::BreedingDone done) {
-    const RunningBreeding& running = running_breedings_.at(done.query);
-    if (const SessionPtr session = find_session(sessions_, running.session)) {
-        session->requests.expect(-running.bytes);
+    const RunningBreeding ended = std::move(running_breedings_.extract(done.query).mapped());
+    const Breeding& breeding = *ended.breeding;
+    if (!ended.is_taken_back) {
+        breeding_quota_.give_back(breeding.user);
+    }
+    if (const SessionPtr session = find_session(sessions_, breeding.session)) {
         if (done.is_shortened) {
             limit_counters_.met(Limit::BreedingRows);
         }
-        session->answer(std::move(done.response));
+        if (ended.is_taken_back && !done.response.has_breeding()) {
+            waiting_breedings_.add_first(breeding.user, ended.breeding);
+        } else {
+            session->requests.expect(-breeding.bytes);
+            session->answer(std::move(done.response));
+        }
     }
-    running_breedings_.erase(done.query);
     begin_next_breeding();
 }
 
 // ---- both ------------------------------------------------------------------------------------------------------
 
 void BackgroundQueries::check_fork(runtime::CommandDone done) {
-    fork_jobs_.add([&outbox = outbox_, waiting = std::make_shared<runtime::CommandDone>(std::move(done))](
-                       const std::stop_token&) { outbox.reply(runtime::check_fork(std::move(*waiting))); });
+    const std::string user = done.mail.user;
+    fork_jobs_.add(
+        [&outbox = outbox_, &turns = turns_, user,
+         waiting = std::make_shared<runtime::CommandDone>(std::move(done))](const std::stop_token& stop) {
+            runtime::JobTurns::Turn turn{turns, user, stop};
+            outbox.reply(runtime::check_fork(std::move(*waiting), turn));
+        },
+        user);
 }
 
 void BackgroundQueries::forget(const Session& session) {
     if (const auto found = exports_.find(session.number()); found != exports_.end()) {
-        cancel(found);
+        cancel(found->second, export_not_wanted());
+        exports_.erase(found);
     }
-    std::erase_if(waiting_breedings_,
-                  [&](const WaitingBreeding& breeding) { return breeding.session == session.number(); });
+    waiting_breedings_.remove_if([&](const BreedingPtr& breeding) { return breeding->session == session.number(); });
     for (auto& [query, running] : running_breedings_) {
-        if (running.session == session.number()) {
+        if (running.breeding->session == session.number()) {
             running.stop.request_stop();
         }
     }

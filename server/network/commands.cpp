@@ -57,7 +57,7 @@ void count_exceeded_limits(const v1::Request& request, LimitCounters& counters) 
     }
 }
 
-/// As account_of() for the session that the actor had.
+/// As Session::account() for the session that the actor had.
 std::string account_of(const base::Actor& actor) {
     boost::system::error_code error;
     const auto address = asio::ip::make_address(actor.address.substr(0, actor.address.rfind(':')), error);
@@ -69,10 +69,6 @@ UserKey key_of(const run_file::Origin& origin) {
 }
 
 } // namespace
-
-std::string account_of(const Session& session) {
-    return session.visitor().name.empty() ? session.address_prefix() : session.visitor().name;
-}
 
 base::Refusal mailbox_full(LimitCounters& limit_counters) {
     limit_counters.met(Limit::MailboxCommands);

@@ -19,9 +19,6 @@ namespace evod::network {
 /// Returns the refusal for a full mailbox, and counts it.
 base::Refusal mailbox_full(LimitCounters& limit_counters);
 
-/// Whose share of a pool the session uses: its user, or its address prefix if it has no token.
-std::string account_of(const Session& session);
-
 class Commands {
   public:
     /// All arguments must outlive this object.
@@ -39,6 +36,8 @@ class Commands {
     /// subscribers.
     void on_done(runtime::CommandDone done);
 
+    /// The keys in the reply cache, by user.
+    const base::Quota& cached_keys() const { return reply_cache_.key_quota(); }
     /// Adds to the reply cache what was known before this server started.
     ///
     /// keys  oldest first. They may contain keys of `answers`.

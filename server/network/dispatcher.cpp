@@ -109,7 +109,7 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulati
     , host_{host}
     , shut_down_{std::move(shut_down)}
     , metrics_{std::move(metrics)}
-    , background_queries_{outbox, sessions, host.limit_counters}
+    , background_queries_{outbox, simulations.job_turns(), sessions, host.limit_counters}
     , heartbeat_{simulations.mailbox_of("")}
     , commands_{context, simulations, streams, host.limit_counters}
     , replay_places_{replays_max} {}

@@ -39,7 +39,7 @@ class Dispatcher {
 
     Commands& commands() { return commands_; }
     const ReplayPlaces& replay_places() const { return replay_places_; }
-    const BackgroundQueries& background_queries() const { return background_queries_; }
+    BackgroundQueries& background_queries() { return background_queries_; }
     /// Commands::handle_own().
     void handle_own(v1::Request request) { commands_.handle_own(std::move(request)); }
 

@@ -2,6 +2,7 @@
 
 #include "server/network/detached.h"
 #include "server/network/no_throw.h"
+#include "server/protocol/public_text.h"
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/beast/http/error.hpp>
@@ -288,12 +289,13 @@ std::optional<HttpAnswer> HttpConnection::refusal_of_token(const Request& reques
     }
     service_.traffic.http_refused_tokens.add();
     const auto code = visitor.error().code;
+    const std::string why = protocol::public_text(visitor.error().message);
     HttpAnswer answer = refused(code == base::RefusalCode::Unauthenticated     ? http::status::unauthorized
                                 : code == base::RefusalCode::ResourceExhausted ? http::status::too_many_requests
                                                                                : http::status::service_unavailable,
-                                visitor.error().message);
+                                why);
     if (code == base::RefusalCode::Unauthenticated) {
-        answer.text = visitor.error().message + "; send it as Authorization: Bearer TOKEN\n";
+        answer.text = why + "; send it as Authorization: Bearer TOKEN\n";
         answer.fields.emplace_back(http::field::www_authenticate, "Bearer realm=\"evod\"");
     }
     return answer;

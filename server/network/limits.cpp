@@ -87,9 +87,16 @@ constexpr LimitRow table[] = {
     {Limit::Lease, "lease_s", seconds(lease_time),
      "seconds that a lease lasts after the last RunUntilTick or RenewLease", "the lease ends, and the world continues"},
     {Limit::Exports, "exports_max", exports_max, "running exports of all sessions",
-     "the server refuses the request with `RESOURCE_EXHAUSTED`"},
+     "the server refuses the request with `RESOURCE_EXHAUSTED`; if only other users hold more, it cancels the oldest "
+     "export of the one with the most",
+     shared},
     {Limit::ExportPatience, "export_patience_s", seconds(runtime::ExportJob::patience),
      "seconds from one part of an export until the client requests the next", "the server cancels the export"},
+    {Limit::Breedings, "breedings_max", breedings_max, "GetBreeding that run at once",
+     "further ones wait, and users are served in turn. Above 64 that wait for one user, the server refuses the request "
+     "with "
+     "`RESOURCE_EXHAUSTED`",
+     shared},
     {Limit::WorldNameBytes, "world_name_bytes_max", simulation::world_name_bytes_max,
      "bytes in the name of a new world", "the server refuses the request with `INVALID_ARGUMENT`"},
     {Limit::ClientKeyBytes, "client_key_bytes_max", protocol::client_key_bytes_max, "bytes in a `client_key`",
@@ -98,10 +105,11 @@ constexpr LimitRow table[] = {
      "the server evicts the oldest answer; if the client repeats that command, the server refuses it with "
      "`FAILED_PRECONDITION`"},
     {Limit::ClientKeys, "client_keys_max", client_keys_max,
-     "keys with cached answers; all cached answers together have at most 64 MiB. A user has at most half of both",
+     "keys with cached answers; all cached answers together have at most 64 MiB",
      "the server evicts keys of the user who has the most: keys with a single command first, then the least recently "
      "used keys. It remembers the highest `request_id` of the last 100,000 evicted keys, and refuses their commands up "
-     "to that id with `FAILED_PRECONDITION`"},
+     "to that id with `FAILED_PRECONDITION`",
+     shared},
     {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::history_generations_kept,
      "generations per world whose statistics the server keeps; with more than 13 islands, as many as fit into 131,072 "
      "rows",

@@ -28,6 +28,8 @@ constexpr double snapshot_rate_hz_min = 1e-6;
 constexpr std::uint32_t retries_kept = 1000;
 constexpr std::uint32_t client_keys_max = 256;
 constexpr std::uint32_t exports_max = 8;
+constexpr std::uint32_t breedings_max = 4;
+constexpr std::size_t breedings_waiting_max = 64; // per user
 constexpr std::chrono::seconds hello_timeout{5};
 constexpr std::chrono::seconds frame_timeout{10};
 constexpr std::chrono::seconds stalled_timeout{10};
@@ -82,6 +84,7 @@ enum class Limit : std::uint8_t {
     Lease,
     Exports,
     ExportPatience,
+    Breedings,
     WorldNameBytes,
     ClientKeyBytes,
     RetriesKept,

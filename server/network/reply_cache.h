@@ -80,6 +80,7 @@ class ReplyCache {
     /// are too old.
     void restore_evicted(const UserKey& user_key, const std::string& account, std::uint64_t highest_id);
 
+    const base::Quota& key_quota() const { return key_quota_; }
     std::size_t key_count() const { return keys_.size(); }
     /// The memory of all answers and of their entries in the cache.
     std::size_t answer_bytes() const { return byte_quota_.held(); }

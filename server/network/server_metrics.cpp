@@ -10,6 +10,7 @@
 #include "server/network/limits.h"
 #include "server/network/server.h"
 #include "server/network/web_assets.h"
+#include "server/protocol/public_text.h"
 #include "server/protocol/refusals.h"
 
 #include <unistd.h>
@@ -201,7 +202,10 @@ v1::Metrics Server::metrics() {
     std::vector<std::pair<Limit, base::Quota>> pools{{Limit::Sessions, table_.places()},
                                                      {Limit::Newcomers, table_.newcomers()},
                                                      {Limit::MailboxCommands, simulations_.mailbox_places()},
-                                                     {Limit::Replays, dispatcher_.replay_places().quota()}};
+                                                     {Limit::Replays, dispatcher_.replay_places().quota()},
+                                                     {Limit::Exports, dispatcher_.background_queries().exports()},
+                                                     {Limit::Breedings, dispatcher_.background_queries().breedings()},
+                                                     {Limit::ClientKeys, dispatcher_.commands().cached_keys()}};
     if (http_) {
         pools.emplace_back(Limit::HttpConnections, http_->places());
     }
@@ -238,7 +242,7 @@ v1::Metrics Server::metrics() {
 asio::awaitable<HttpAnswer> Server::health() {
     const auto ill = [](const std::string& why) {
         return HttpAnswer{.status = boost::beast::http::status::service_unavailable,
-                          .text = protocol::quotable(why, 1000) + '\n'};
+                          .text = protocol::quotable(protocol::public_text(why), 1000) + '\n'};
     };
     const bool answers = co_await dispatcher_.simulation_answers_within(simulation_patience);
     if (going_away_) {

@@ -229,10 +229,18 @@ asio::awaitable<void> Session::read() {
             if (!turns_to_send_.take(cost, host_.clock->now())) {
                 co_await wait_for_turn(cost);
             }
+            const bool is_large = LargeFrames::contains((*frame)->body.size());
+            if (is_large) {
+                co_await wait_for_large_frame();
+            }
             if (is_over()) {
                 break;
             }
+            const auto began = host_.clock->now();
             on_frame(**frame);
+            if (is_large) {
+                host_.large_frames.charge(account_, host_.clock->now(), host_.clock->now() - began);
+            }
             // Let the thread serve other sessions before the next frame is read.
             co_await asio::post(transport_->socket().get_executor(), no_throw);
         }
@@ -269,6 +277,14 @@ asio::awaitable<void> Session::wait_for_turn(double cost) {
     do {
         co_await turn_.wait(Signal::Timer::clock_type::now() + turns_to_send_.time_for(request_burst_max / 10));
     } while (!is_over() && !turns_to_send_.take(cost, host_.clock->now()));
+}
+
+asio::awaitable<void> Session::wait_for_large_frame() {
+    // Another session of the user may have parsed one when this session wakes up.
+    for (auto now = host_.clock->now(), earliest = host_.large_frames.earliest(account_); !is_over() && earliest > now;
+         now = host_.clock->now(), earliest = host_.large_frames.earliest(account_)) {
+        co_await turn_.wait(Signal::Timer::clock_type::now() + (earliest - now));
+    }
 }
 
 asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
@@ -395,8 +411,7 @@ void Session::log_line(log::Level level, std::string_view code, const std::strin
     }
     std::uint64_t left_out = 0;
     if (level >= log::Level::Info) { // clients must not fill the disk with log lines
-        const std::string user = !greeted() ? "" : visitor_->name.empty() ? address_prefix_ : visitor_->name;
-        const auto before = host_.log_limit.take(user, host_.clock->now());
+        const auto before = host_.log_limit.take(greeted() ? account_ : "", host_.clock->now());
         if (!before) {
             return;
         }

@@ -19,6 +19,7 @@
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
 #include "server/network/client_watch.h"
+#include "server/network/large_frames.h"
 #include "server/network/limits.h"
 #include "server/network/log_limit.h"
 #include "server/network/messages.h"
@@ -68,6 +69,7 @@ struct SessionHost {
     metrics::Traffic traffic = {};
     runtime::Clock* clock = nullptr;
     LogLimit log_limit = {};
+    LargeFrames large_frames = {};
     std::string frame = {}; // reused buffer in which frames of snapshots are assembled
     /// Authenticates a client by its token and address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
@@ -180,6 +182,8 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     asio::awaitable<void> write();
     /// Waits until the rate limit allows a frame of this cost.
     asio::awaitable<void> wait_for_turn(double cost);
+    /// Waits until a large frame of this user may be parsed.
+    asio::awaitable<void> wait_for_large_frame();
     /// Stops reading, and calls fail() once all requests are answered.
     asio::awaitable<void> fail_when_answered(base::Refusal refused);
     asio::awaitable<void> discard_input();

@@ -47,8 +47,8 @@ v1::Status to_proto(const base::Refusal& refusal) {
         }
         v1::Violation& listed = *status.add_violations();
         listed.set_field(quotable(violation.field, 200));
-        listed.set_allowed(quotable(violation.allowed, 2000));
-        listed.set_got(violation.got.empty() ? "nothing" : quotable(violation.got, 200));
+        listed.set_allowed(quotable(public_text(violation.allowed), 2000));
+        listed.set_got(violation.got.empty() ? "nothing" : quotable(public_text(violation.got), 200));
     }
     return status;
 }

@@ -69,7 +69,7 @@ bool are_stored(const std::vector<evolution::BreedingRecord::Descendant>& descen
 } // namespace
 
 Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
-                         const std::stop_token& stop) {
+                         const base::StopCheck& stop) {
     if (auto refused = file.other_model()) {
         return *refused;
     }
@@ -111,6 +111,9 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
         [&](std::size_t island) -> std::span<double> { return parents->ended->outcomes[island].fitness; }, seed,
         *generation, executor);
     const auto migrants = migrate(*parents, bred.parameters, seed, bred.island);
+    if (stop()) {
+        return cancelled_refusal();
+    }
     bred.record = evolution::record_breeding(
         parents->ended->outcomes[bred.island].fitness, parents->begun.born[bred.island].genes, bred.parameters,
         bred.parameters.population_size, {.seed = seed, .island = bred.island, .generation = *generation}, wanted.rows,

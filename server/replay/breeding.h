@@ -4,11 +4,11 @@
 #pragma once
 
 #include "server/base/executor.h"
+#include "server/base/stop_check.h"
 #include "server/evolution/breeding_record.h"
 #include "server/run_file/run_file.h"
 
 #include <optional>
-#include <stop_token>
 
 namespace evod::replay {
 
@@ -27,12 +27,12 @@ struct Bred {
 };
 
 /// file  must have a pinned snapshot.
-/// stop  cancels the work; the result is then a refusal with UNAVAILABLE.
+/// stop  stops the work; the result is then a refusal with UNAVAILABLE.
 ///
 /// Refused for the same reasons as GenerationReader::read(). Also refused if the generation or the island does not
 /// exist, if no generation has bred yet, or if the run follows another model. Refused with DATA_LOSS if the stored
 /// descendants differ.
 base::Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
-                               const std::stop_token& stop);
+                               const base::StopCheck& stop);
 
 } // namespace evod::replay

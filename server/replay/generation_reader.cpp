@@ -17,6 +17,9 @@ Refusal GenerationReader::damaged(std::uint64_t generation, const std::string& w
 }
 
 Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
+    if (stop_()) {
+        return cancelled_refusal();
+    }
     const bool retained = file_.retention().at_or_before(generation) == generation;
     auto whole = retained ? read_stored(generation) : simulate(generation);
     if (!whole) {
@@ -60,7 +63,7 @@ Result<WholeGeneration> GenerationReader::read_stored(std::uint64_t generation) 
 
 Result<void> GenerationReader::read_changes() {
     if (!changes_) {
-        auto changes = world_changes(file_);
+        auto changes = world_changes(file_, 0, stop_);
         if (!changes) {
             return changes.error();
         }
@@ -145,8 +148,8 @@ Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
 }
 
 Result<void> GenerationReader::advance_tick() {
-    if (stop_.stop_requested()) {
-        return Refusal{.code = base::RefusalCode::Unavailable, .message = "reading was cancelled", .violations = {}};
+    if (stop_()) {
+        return cancelled_refusal();
     }
     rerun_->advance_tick(executor_);
     if (const auto& fault = rerun_->changes().fault()) {

@@ -4,11 +4,11 @@
 #pragma once
 
 #include "server/base/executor.h"
+#include "server/base/stop_check.h"
 #include "server/replay/rerun.h"
 #include "server/run_file/run_file.h"
 
 #include <optional>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -30,8 +30,8 @@ inline bool can_be_read(run_file::RunFile& file, std::uint64_t generation) {
 class GenerationReader {
   public:
     /// file  must have a pinned snapshot. The file and the executor must outlive the reader.
-    /// stop  cancels the simulation; then read() is refused with UNAVAILABLE.
-    GenerationReader(run_file::RunFile& file, base::Executor& executor, std::stop_token stop = {})
+    /// stop  stops the work; then read() is refused with UNAVAILABLE.
+    GenerationReader(run_file::RunFile& file, base::Executor& executor, base::StopCheck stop = {})
         : file_{file}, executor_{executor}, stop_{std::move(stop)} {}
 
     /// Reads a generation that has begun. Reading generations that are not retained is fastest in ascending order.
@@ -50,7 +50,7 @@ class GenerationReader {
 
     run_file::RunFile& file_;
     base::Executor& executor_;
-    std::stop_token stop_;
+    const base::StopCheck stop_;
     std::optional<std::vector<WorldChange>> changes_; // changes of the run; read at the first use
     std::optional<Rerun> rerun_;                      // a world in the generation that was simulated last
 };

@@ -149,7 +149,7 @@ std::vector<Family> families_of(const Births& births, ParentPlaces parents, cons
 /// Reads backwards, from one retained generation to the previous retained one.
 class BackwardReader {
   public:
-    BackwardReader(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop)
+    BackwardReader(run_file::RunFile& file, base::Executor& executor, const base::StopCheck& stop)
         : file_{file}, reader_{file, executor, stop} {}
 
     Result<Births> read(std::uint64_t generation) {
@@ -175,13 +175,16 @@ class BackwardReader {
 
 } // namespace
 
-Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
+Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const base::StopCheck& stop,
                              ReportFamilies report, std::uint64_t first) {
     GenerationReader reader{file, executor, stop};
     const std::uint64_t last = file.generations().last();
     std::optional<Births> births;
     ParentPlaces parents;
     const auto read = [&](std::uint64_t generation, std::optional<Births>& to) -> Result<void> {
+        if (stop()) {
+            return cancelled_refusal();
+        }
         if (!can_be_read(file, generation)) {
             const auto opening = file.generations().opening_of(generation);
             if (!opening) {
@@ -235,7 +238,7 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
 }
 
 Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor,
-                                       const std::stop_token& stop, ReportFamilies report) {
+                                       const base::StopCheck& stop, ReportFamilies report) {
     BackwardReader reader{file, executor, stop};
     std::optional<Births> next;
     ParentPlaces next_parents;

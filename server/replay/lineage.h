@@ -6,11 +6,11 @@
 #pragma once
 
 #include "server/base/executor.h"
+#include "server/base/stop_check.h"
 #include "server/run_file/run_file.h"
 
 #include <array>
 #include <cstdint>
-#include <stop_token>
 #include <vector>
 
 namespace evod::replay {
@@ -41,12 +41,12 @@ using ReportFamilies = base::FunctionRef<bool(std::uint64_t generation, const st
 // For a run of another model, migrants and generations that are not retained are unknown.
 
 /// Calls `report` in ascending order for every generation, from `first` on, that has begun and can be read.
-base::Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
+base::Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const base::StopCheck& stop,
                                    ReportFamilies report, std::uint64_t first = 0);
 /// Calls `report` in descending order, from this generation to the first one of the file, or until a generation cannot
 /// be read. Refused for the same reasons as GenerationReader::read().
 base::Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation,
-                                             base::Executor& executor, const std::stop_token& stop,
+                                             base::Executor& executor, const base::StopCheck& stop,
                                              ReportFamilies report);
 
 } // namespace evod::replay

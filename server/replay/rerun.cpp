@@ -119,30 +119,11 @@ const char* impossible_part_of(const run_file::GenerationBegun& begun) {
     return possible ? nullptr : "population";
 }
 
-} // namespace
-
-std::size_t bytes_of(const WorldChange& change) {
-    std::size_t bytes =
-        sizeof change + change.by.capacity() + change.assignments.capacity() * sizeof(parameters::Assignment);
-    if (change.checked) {
-        bytes +=
-            sizeof *change.checked + std::visit([](const auto& command) { return bytes_of(command); }, *change.checked);
-    }
-    return bytes;
-}
-
-Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry) {
-    const auto journal = file.journal().read(after_entry + 1);
-    if (!journal) {
-        return journal.error();
-    }
-    return world_changes(file.path(), *journal);
-}
-
-Result<std::vector<WorldChange>> world_changes(const std::string& path,
-                                               std::span<const run_file::JournalEntry> journal) {
-    std::vector<WorldChange> changes;
-    std::uint64_t tick = 0;
+/// Adds the changes of these journal entries.
+///
+/// tick  of the entry before; becomes that of the last one.
+Result<void> add_changes(const std::string& path, std::span<const run_file::JournalEntry> journal, std::uint64_t& tick,
+                         std::vector<WorldChange>& changes) {
     for (const run_file::JournalEntry& entry : journal) {
         auto command = command_of(entry.origin.request);
         if (!command) {
@@ -166,14 +147,63 @@ Result<std::vector<WorldChange>> world_changes(const std::string& path,
                                .checked = std::make_shared<const CheckedCommand>(*std::move(checked))});
         }
     }
+    return {};
+}
+
+} // namespace
+
+std::size_t bytes_of(const WorldChange& change) {
+    std::size_t bytes =
+        sizeof change + change.by.capacity() + change.assignments.capacity() * sizeof(parameters::Assignment);
+    if (change.checked) {
+        bytes +=
+            sizeof *change.checked + std::visit([](const auto& command) { return bytes_of(command); }, *change.checked);
+    }
+    return bytes;
+}
+
+base::Refusal cancelled_refusal() {
+    return refusal(RefusalCode::Unavailable, "reading was cancelled");
+}
+
+Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry,
+                                               const base::StopCheck& stop) {
+    constexpr std::uint32_t entries_at_once = 1000;
+    std::vector<WorldChange> changes;
+    std::uint64_t tick = 0;
+    while (true) {
+        if (stop()) {
+            return cancelled_refusal();
+        }
+        const auto journal = file.journal().read(after_entry + 1, entries_at_once);
+        if (!journal) {
+            return journal.error();
+        }
+        if (auto added = add_changes(file.path(), *journal, tick, changes); !added) {
+            return added.error();
+        }
+        if (journal->size() < entries_at_once) {
+            return changes;
+        }
+        after_entry += entries_at_once;
+    }
+}
+
+Result<std::vector<WorldChange>> world_changes(const std::string& path,
+                                               std::span<const run_file::JournalEntry> journal) {
+    std::vector<WorldChange> changes;
+    std::uint64_t tick = 0;
+    if (auto added = add_changes(path, journal, tick, changes); !added) {
+        return added.error();
+    }
     return changes;
 }
 
-Result<std::vector<WorldChange>> Rerun::changes_of(run_file::RunFile& file) {
+Result<std::vector<WorldChange>> Rerun::changes_of(run_file::RunFile& file, const base::StopCheck& stop) {
     if (auto refused = file.other_model()) {
         return *refused;
     }
-    return world_changes(file);
+    return world_changes(file, 0, stop);
 }
 
 Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor) {
@@ -203,8 +233,8 @@ Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base:
 }
 
 Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
-                            std::size_t history_count, base::Executor& executor) {
-    const auto changes = changes_of(file);
+                            std::size_t history_count, base::Executor& executor, const base::StopCheck& stop) {
+    const auto changes = changes_of(file, stop);
     if (!changes) {
         return changes.error();
     }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "server/base/executor.h"
+#include "server/base/stop_check.h"
 #include "server/run_file/run_file.h"
 
 #include <cstddef>
@@ -19,6 +20,9 @@ namespace evod::replay {
 
 /// A command that check() accepts before it changes a world.
 using CheckedCommand = std::variant<simulation::PlaceEntities, simulation::RemoveEntities, simulation::SetFitness>;
+
+/// Why work ended that a StopCheck has stopped.
+base::Refusal cancelled_refusal();
 
 /// A command in the journal that changes a world: it changes parameters, plans such a change, cancels a planned change,
 /// places or removes entities, or sets fitness.
@@ -40,7 +44,9 @@ std::size_t bytes_of(const WorldChange& change);
 /// its tick is before that of the previous entry.
 ///
 /// after_entry  the journal entries up to and including this one are skipped.
-base::Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry = 0);
+/// stop         stops the work, which is then refused with UNAVAILABLE.
+base::Result<std::vector<WorldChange>> world_changes(run_file::RunFile& file, std::uint64_t after_entry = 0,
+                                                     const base::StopCheck& stop = {});
 /// Like world_changes() above, for entries that have already been read.
 ///
 /// path  path of the file that contains the entries, for error messages.
@@ -99,8 +105,10 @@ class Rerun {
     ///
     /// tick           ticks since the run began; must be within the generation.
     /// history_count  maximum number of previous generations whose statistics the world gets.
+    /// stop           stops reading, which is then refused with UNAVAILABLE.
     static base::Result<Rerun> before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
-                                      std::size_t history_count, base::Executor& executor);
+                                      std::size_t history_count, base::Executor& executor,
+                                      const base::StopCheck& stop = {});
     /// Like before() above, for a tick that the file contains. Refused for any other tick.
     static base::Result<Rerun> before(run_file::RunFile& file, std::uint64_t tick, base::Executor& executor);
     /// Like before() above, for changes that have already been read.
@@ -157,7 +165,7 @@ class Rerun {
         apply_changes();
     }
     /// Reads the changes of a run. Refused if this program cannot simulate the run.
-    static base::Result<std::vector<WorldChange>> changes_of(run_file::RunFile& file);
+    static base::Result<std::vector<WorldChange>> changes_of(run_file::RunFile& file, const base::StopCheck& stop = {});
     /// after_entry  the world already contains the journal entries up to and including this one.
     static base::Result<Rerun> with_changes(const run_file::RunFile& file, simulation::World world,
                                             std::span<const WorldChange> changes, std::uint64_t after_entry);

@@ -19,9 +19,13 @@ using run_file::RunFile;
 
 /// Calls `of_generation` for each generation that has begun, in order, as long as rows can be written.
 template <class OfGeneration>
-Result<void> for_each_generation(run_file::RunFile& file, const std::ostream& out, OfGeneration&& of_generation) {
+Result<void> for_each_generation(const RunSource& run, const std::ostream& out, OfGeneration&& of_generation) {
+    run_file::RunFile& file = run.file;
     const std::uint64_t last = file.generations().last();
     for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation) {
+        if (run.stop()) {
+            return cancelled_refusal();
+        }
         const auto opening = file.generations().opening_of(generation);
         if (!opening) {
             return opening.error();
@@ -126,7 +130,7 @@ using Wanted = std::vector<std::vector<bool>>;
 void write_families(Table& table, std::uint64_t generation, const std::vector<Family>& families, const Wanted* wanted) {
     for (std::size_t island = 0; island < families.size(); ++island) {
         const Family& family = families[island];
-        for (std::size_t organism = 0; organism < family.organism_count; ++organism) {
+        for (std::size_t organism = 0; organism < family.organism_count && table.can_write(); ++organism) {
             if (wanted != nullptr && !(*wanted)[island][organism]) {
                 continue;
             }
@@ -184,7 +188,7 @@ std::string kind_of(const v1::Request& request) {
 Result<void> write_generations(const RunSource& run, std::ostream& out, Table::Format format) {
     const std::vector<std::string> gene_names = gene_names_of(run.file.identity().parameters);
     Table table{out, format, statistics_columns(gene_names)};
-    return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
+    return for_each_generation(run, out, [&](std::uint64_t generation) -> Result<void> {
         const auto statistics = run.file.generations().statistics_of(generation);
         if (!statistics) {
             return statistics.error();
@@ -203,7 +207,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
     columns.insert(columns.end(), {"fitness", "lived_s", "cause"});
     Table table{out, format, std::move(columns)};
     GenerationReader reader{run.file, run.executor, run.stop};
-    return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
+    return for_each_generation(run, out, [&](std::uint64_t generation) -> Result<void> {
         if (!can_be_read(run.file, generation)) {
             return {};
         }
@@ -218,7 +222,8 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
             if (ended) {
                 island.emplace(EndedIsland{ended->outcomes[i], ended->statistics[i]});
             }
-            for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()); ++organism) {
+            for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()) && table.can_write();
+                 ++organism) {
                 table.number(generation).number(i).number(organism);
                 write_organism(table, born, placed[i], organism, begun.opening.parameters.active.tick_s, island);
             }
@@ -322,6 +327,9 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
             return entries.error();
         }
         for (const run_file::JournalEntry& entry : *entries) {
+            if (!out) {
+                return {};
+            }
             v1::Request request;
             std::string json;
             const bool parsed = request.ParseFromString(entry.origin.request);
@@ -354,11 +362,11 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
 
 } // namespace
 
-std::uint64_t generations_out_of_reach(run_file::RunFile& file) {
+std::uint64_t generations_out_of_reach(run_file::RunFile& file, const base::StopCheck& stop) {
     std::uint64_t count = 0;
     const std::uint64_t last = file.generations().last();
     if (file.other_model()) {
-        for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
+        for (std::uint64_t generation = file.identity().first_generation; generation <= last && !stop(); ++generation) {
             const auto opening = file.generations().opening_of(generation);
             if (!opening || !*opening) {
                 break; // the file is damaged; reading the generation reports it
@@ -374,7 +382,7 @@ void write_population(const std::vector<evolution::GeneMatrix>& population, std:
     Table table{out, format, population_columns(gene_names)};
     for (std::size_t island = 0; island < population.size(); ++island) {
         const evolution::GeneMatrix& genes = population[island];
-        for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {
+        for (std::uint32_t organism = 0; organism < genes.cols() && table.can_write(); ++organism) {
             table.number(island).number(organism);
             for (const float gene : evolution::column(genes, organism)) {
                 table.number(gene);

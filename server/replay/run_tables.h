@@ -10,12 +10,12 @@
 #pragma once
 
 #include "server/base/executor.h"
+#include "server/base/stop_check.h"
 #include "server/replay/table.h"
 #include "server/run_file/run_file.h"
 
 #include <optional>
 #include <ostream>
-#include <stop_token>
 
 namespace evod::replay {
 
@@ -40,11 +40,11 @@ struct WantedTable {
     bool only_users = false;
 };
 
-/// A run file with a pinned snapshot, an executor to simulate generations again, and a token that cancels the work.
+/// A run file with a pinned snapshot, an executor to simulate generations again, and what stops the work.
 struct RunSource {
     run_file::RunFile& file;
     base::Executor& executor;
-    std::stop_token stop = {};
+    base::StopCheck stop = {};
 };
 
 /// Writes a table. Refused if the file is damaged, or if it does not contain the generation or the organism. Also
@@ -55,7 +55,9 @@ struct RunSource {
 base::Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::ostream& out);
 
 /// The number of generations whose organisms are lost, because they are not retained and the run follows another model.
-std::uint64_t generations_out_of_reach(run_file::RunFile& file);
+///
+/// stop  stops the work; the number is then too small.
+std::uint64_t generations_out_of_reach(run_file::RunFile& file, const base::StopCheck& stop = {});
 
 /// Writes a population that is not from a run file as a table `population`.
 void write_population(const std::vector<evolution::GeneMatrix>& population, std::span<const std::string> gene_names,

@@ -113,7 +113,7 @@ Result<std::string> StoredRun::world_name() const {
 }
 
 Result<SeekStart> StoredRun::start_seek(const std::optional<WantedMoment>& wanted, RecordedUntil known,
-                                        base::Executor& executor) const {
+                                        base::Executor& executor, const base::StopCheck& stop) const {
     const auto file = open();
     if (!file) {
         return file.error();
@@ -129,14 +129,14 @@ Result<SeekStart> StoredRun::start_seek(const std::optional<WantedMoment>& wante
     if (!to) {
         return to.error();
     }
-    auto from = Rerun::before(**file, to->generation, to->tick, history_generations_known, executor);
+    auto from = Rerun::before(**file, to->generation, to->tick, history_generations_known, executor, stop);
     if (!from) {
         return from.error();
     }
     return SeekStart{std::move(there), *to, *std::move(from)};
 }
 
-Result<NewRecords> StoredRun::new_records(std::uint64_t after_entry) const {
+Result<NewRecords> StoredRun::new_records(std::uint64_t after_entry, const base::StopCheck& stop) const {
     const auto file = open();
     if (!file) {
         return file.error();
@@ -149,7 +149,7 @@ Result<NewRecords> StoredRun::new_records(std::uint64_t after_entry) const {
                     .after_entry = after_entry,
                     .last_entry = std::max(after_entry, (*file)->journal().last_number()),
                     .changes = {}};
-    auto changes = world_changes(**file, after_entry);
+    auto changes = world_changes(**file, after_entry, stop);
     if (!changes) {
         return changes.error();
     }

@@ -70,11 +70,12 @@ class StoredRun {
     /// wanted  nullopt: the first moment.
     /// known   must be determined before the caller waits for the disk. The file then contains every command up to this
     ///         moment, and the beginning of its generation.
+    /// stop    stops reading, which is then refused with UNAVAILABLE.
     base::Result<SeekStart> start_seek(const std::optional<WantedMoment>& wanted, RecordedUntil known,
-                                       base::Executor& executor) const;
+                                       base::Executor& executor, const base::StopCheck& stop = {}) const;
 
     /// after_entry  the journal entries up to and including this one are skipped.
-    base::Result<NewRecords> new_records(std::uint64_t after_entry) const;
+    base::Result<NewRecords> new_records(std::uint64_t after_entry, const base::StopCheck& stop = {}) const;
 
     /// Opens the file of the run for reading, under its present name.
     base::Result<std::unique_ptr<run_file::RunFile>> open() const;

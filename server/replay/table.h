@@ -40,6 +40,8 @@ class Table {
     /// Writes an unknown value: an empty field in CSV, null in JSON.
     Table& nothing();
     void end_row();
+    /// Whether further rows can be written.
+    bool can_write() const { return out_.good(); }
 
   private:
     void begin_field();

@@ -1,14 +1,16 @@
 // Export job: writes a table of a run as text, in parts that the client requests one by one.
 //
-// Threads   a job queue runs it. The parts go through the outbox to the network thread. It reads the run file while the server may write to it. Generations that the file does
-//           not retain are simulated on the thread of the job, so no world waits for the export.
-// Full      the job waits until a finished part is requested. It holds a database snapshot of the run file meanwhile,
-//           so it ends after waiting for `patience`.
+// Threads   a job queue runs it. The parts go through the outbox to the network thread. It reads the run file while the
+//           server may write to it. Generations that the file does not retain are simulated on the thread of the job, so no
+//           world waits for the export.
+// Full      the job waits until a finished part is requested, and lets other jobs compute meanwhile (job_turns.h). It holds
+//           a database snapshot of the run file, so it ends after waiting for `patience`.
 #pragma once
 
 #include "server/jobs/job_queue.h"
 #include "server/replay/run_tables.h"
 #include "server/replay/stored_run.h"
+#include "server/runtime/job_turns.h"
 #include "server/runtime/outbox.h"
 
 #include <chrono>
@@ -26,9 +28,14 @@ class ExportJob {
     static constexpr std::size_t held_bytes = 2 * part_bytes; // memory of a running export: a part that waits
     static constexpr std::chrono::milliseconds patience = std::chrono::seconds{30};
 
-    /// jobs    must outlive the job and have a free thread, because each export occupies a thread while it waits.
-    /// outbox  receives the parts. Must outlive the job.
-    ExportJob(jobs::JobQueue& jobs, Outbox& outbox, replay::StoredRun run, const replay::WantedTable& wanted,
+    struct Tools {
+        jobs::JobQueue& jobs; // must have a free thread, because each export occupies a thread while it waits
+        JobTurns& turns;
+        Outbox& outbox; // receives the parts
+    };
+    /// tools  must outlive the job.
+    /// user   whose account pays for the time of the job.
+    ExportJob(const Tools& tools, const std::string& user, replay::StoredRun run, const replay::WantedTable& wanted,
               std::chrono::milliseconds patience_time = patience);
     /// Cancels the job and waits until it has ended.
     ~ExportJob();
@@ -38,7 +45,9 @@ class ExportJob {
     void next(const PartRequest& request);
 
     /// Cancels the job.
-    void request_stop() { stop_.request_stop(); }
+    ///
+    /// why  the answer to the request for a part, if one waits.
+    void cancel(const base::Refusal& why);
     /// Whether the job has ended.
     bool finished();
 
@@ -46,12 +55,15 @@ class ExportJob {
     class PartBuffer;
 
     void work(const std::stop_token& stop);
-    base::Result<void> write(const std::stop_token& stop);
+    base::Result<void> write(JobTurns::Turn& turn, const std::stop_token& stop);
+    /// Answers the last request for a part, if there is one, with the reason why no part comes.
+    void end(const base::Result<void>& written, const std::stop_token& stop);
     /// Waits until a part is requested and returns it to the client. Returns false if no request arrives within
-    /// `patience`.
-    bool give(ExportPart part, const std::stop_token& stop);
+    /// `patience`, or if the job is cancelled.
+    bool give(ExportPart part, JobTurns::Turn& turn, const std::stop_token& stop);
 
-    Outbox& outbox_;
+    const Tools tools_;
+    const std::string user_;
     const replay::StoredRun run_;
     const replay::WantedTable wanted_;
     const std::chrono::milliseconds patience_;
@@ -61,6 +73,7 @@ class ExportJob {
     std::mutex mutex_; // guards the members below
     std::condition_variable_any changed_;
     std::optional<PartRequest> request_; // nullopt: no part is requested
+    base::Refusal cancelled_;            // why the job is cancelled
     bool over_ = false;                  // no more parts will be returned
     bool finished_ = false;
     std::stop_source stop_; // last member, because initialising it starts the job, which uses the other members

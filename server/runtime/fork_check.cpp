@@ -27,11 +27,13 @@ base::Result<void> check_once(const ForkFile& fork) {
 
 /// If another command ends the run at the same time, the file and its log are renamed one after the other, and what is
 /// between cannot be read.
-base::Result<void> check_file(const ForkFile& fork) {
+base::Result<void> check_file(const ForkFile& fork, JobTurns::Turn& turn) {
     constexpr int attempts = 5;
     auto checked = check_once(fork);
     for (int attempt = 1; !checked && attempt < attempts; ++attempt) {
+        turn.give_back();
         std::this_thread::sleep_for(std::chrono::milliseconds{100});
+        turn.take();
         checked = check_once(fork);
     }
     return checked;
@@ -44,9 +46,9 @@ base::Refusal unreadable_fork(const std::string& why) {
 
 } // namespace
 
-CommandDone check_fork(CommandDone done) {
+CommandDone check_fork(CommandDone done, JobTurns::Turn& turn) {
     const ForkFile file = *std::exchange(done.fork, std::nullopt);
-    const auto checked = check_file(file);
+    const auto checked = check_file(file, turn);
     if (!checked) {
         log::error({.world = done.outcome->world}, "{}", checked.error().message);
         return refused(std::move(done), unreadable_fork(checked.error().message));

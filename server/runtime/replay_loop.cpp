@@ -31,11 +31,12 @@ LoopOutputs with_users(LoopOutputs outputs, LoopOutputs::UserOf user_of) {
 
 } // namespace
 
-ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file,
+ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, JobTurns& turns, std::optional<FileReplay> file,
                        simulation::Laboratory laboratory)
     : SimulationLoop{tools, with_users(std::move(outputs), [this](const std::string& world) { return user_of(world); }),
                      std::move(laboratory)}
     , hosts_worlds_{file.has_value()}
+    , jobs_{turns}
     , seeks_{tools.mailbox, jobs_, tools.executor}
     , shown_{laboratory_, tools.mailbox, jobs_} {
     if (file) {

@@ -24,9 +24,10 @@ class ReplayLoop final : public SimulationLoop {
   public:
     /// All references must outlive the loop.
     ///
-    /// file  the replay of a run file that the server shows from its start.
+    /// turns       of the jobs that read run files.
+    /// file        the replay of a run file that the server shows from its start.
     /// laboratory  the worlds that it has besides replays.
-    ReplayLoop(const LoopTools& tools, LoopOutputs outputs, std::optional<FileReplay> file = {},
+    ReplayLoop(const LoopTools& tools, LoopOutputs outputs, JobTurns& turns, std::optional<FileReplay> file = {},
                simulation::Laboratory laboratory = {});
 
   private:
@@ -62,7 +63,7 @@ class ReplayLoop final : public SimulationLoop {
 
     const bool hosts_worlds_; // this is the only loop of the server
     std::uint64_t last_name_ = 0;
-    jobs::JobQueue jobs_{{.name = "replay files", .niceness = 10}};
+    FileJobs jobs_;
     Seeks seeks_;
     ShownReplays shown_;
     std::map<std::uint64_t, std::size_t> reported_bytes_; // key: number of the session

@@ -106,12 +106,13 @@ void Seeks::begin(Request request) {
     const auto seek =
         seeks_.emplace(++last_number_, Running{.request = std::move(request), .user = std::move(user)}).first;
     const Request& begun = seek->second.request;
-    jobs_.add([&mailbox = mailbox_, number = seek->first, run = begun.run, to = begun.to,
-               until = begun.until](const std::stop_token&) {
-        base::InlineExecutor executor;
-        mailbox.push(SeekRead{number, std::make_shared<base::Result<replay::SeekStart>>(
-                                          base::within_memory([&] { return run.start_seek(to, until, executor); }))});
-    });
+    seek->second.reading =
+        jobs_.add(seek->second.user, [&mailbox = mailbox_, number = seek->first, run = begun.run, to = begun.to,
+                                      until = begun.until](const base::StopCheck& stop) {
+            base::InlineExecutor executor;
+            mailbox.push(SeekRead{number, std::make_shared<base::Result<replay::SeekStart>>(base::within_memory(
+                                              [&] { return run.start_seek(to, until, executor, stop); }))});
+        });
 }
 
 std::uint64_t Seeks::take(const SeekRead& mail) {
@@ -132,6 +133,7 @@ std::uint64_t Seeks::take(const SeekRead& mail) {
 }
 
 void Seeks::end(std::map<std::uint64_t, Running>::iterator seek, base::Result<SeekResult> result) {
+    seek->second.reading.request_stop();
     ended_.push_back({std::move(seek->second.request), std::move(result)});
     seeks_.erase(seek);
 }

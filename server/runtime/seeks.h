@@ -3,13 +3,13 @@
 //
 //   begin → read the file → simulate up to the moment → take_ended
 //
-// Owner        the loop of the replays, on its thread. A job queue reads the files.
+// Owner        the loop of the replays, on its thread. Background jobs read the files.
 // Full         the places of replays (network/replay_places.h) bound the number of seeks: of the seeks that move a replay, one is
 //              read and one simulates.
 // Determinism  a seek reproduces a run bit for bit.
 #pragma once
 
-#include "server/jobs/job_queue.h"
+#include "server/runtime/file_jobs.h"
 #include "server/runtime/mailbox.h"
 
 #include <cstdint>
@@ -65,12 +65,13 @@ class Seeks {
     struct Running {
         Request request;
         std::string user = {};
-        std::optional<replay::SeekStart> at = {}; // empty while the file is being read
-        std::uint64_t turn = 0;                   // when it last had a slice; the loop sets it
+        std::optional<replay::SeekStart> at = {};                      // empty while the file is being read
+        std::uint64_t turn = 0;                                        // when it last had a slice; the loop sets it
+        std::stop_source reading = std::stop_source{std::nostopstate}; // cancels the job that reads the file
     };
 
     /// All arguments must outlive this object. mailbox: of the loop, which gets the results of jobs.
-    Seeks(Mailbox& mailbox, jobs::JobQueue& jobs, base::Executor& executor)
+    Seeks(Mailbox& mailbox, FileJobs& jobs, base::Executor& executor)
         : mailbox_{mailbox}, jobs_{jobs}, executor_{executor} {}
 
     void begin(Request request);
@@ -98,7 +99,7 @@ class Seeks {
     void cancel(const std::function<bool(const Running&)>& is_wanted, const base::Refusal& why);
 
     Mailbox& mailbox_;
-    jobs::JobQueue& jobs_;
+    FileJobs& jobs_;
     base::Executor& executor_;
     std::map<std::uint64_t, Running> seeks_; // key: number of the seek
     std::vector<Ended> ended_;

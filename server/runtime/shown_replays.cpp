@@ -88,10 +88,10 @@ std::optional<Clock::time_point> ShownReplays::refresh(Clock::time_point now) {
         if (now >= shown.refreshed + refresh_time) {
             shown.refreshed = now;
             shown.being_read = true;
-            jobs_.add([&mailbox = mailbox_, name = name, run = shown.run,
-                       after = shown.entries_read](const std::stop_token&) {
+            jobs_.add(shown.owner.user, [&mailbox = mailbox_, name = name, run = shown.run,
+                                         after = shown.entries_read](const base::StopCheck& stop) {
                 mailbox.push(RecordsRead{name, std::make_shared<const base::Result<replay::NewRecords>>(
-                                                   base::within_memory([&] { return run.new_records(after); }))});
+                                                   base::within_memory([&] { return run.new_records(after, stop); }))});
             });
         }
         const auto again = shown.refreshed + refresh_time;

@@ -1,6 +1,6 @@
 // Shown replays: the worlds that show stored runs.
 //
-// Owner        the loop of the replays, on its thread. A job queue reads the files.
+// Owner        the loop of the replays, on its thread. Background jobs read the files.
 // Determinism  a running replay applies the stored changes at their ticks. If the run is live, the replay continues
 //              with the records that were added since.
 #pragma once
@@ -20,7 +20,7 @@ class ShownReplays {
     static constexpr std::chrono::milliseconds refresh_time{250};
 
     /// All arguments must outlive this object. mailbox: of the loop, which gets the results of jobs.
-    ShownReplays(simulation::Laboratory& laboratory, Mailbox& mailbox, jobs::JobQueue& jobs)
+    ShownReplays(simulation::Laboratory& laboratory, Mailbox& mailbox, FileJobs& jobs)
         : laboratory_{laboratory}, mailbox_{mailbox}, jobs_{jobs} {}
 
     struct Owner {
@@ -67,7 +67,7 @@ class ShownReplays {
 
     simulation::Laboratory& laboratory_;
     Mailbox& mailbox_;
-    jobs::JobQueue& jobs_;
+    FileJobs& jobs_;
     std::map<std::string, Shown, std::less<>> replays_; // key: name of the replay
 };
 

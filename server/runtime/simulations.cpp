@@ -13,7 +13,8 @@ void Simulations::start(Start with) {
         replays_.thread = std::make_unique<SimulationThread>(
             SimulationThread::Options{.name = "simulation"}, replays_.mailbox,
             std::make_unique<ReplayLoop>(LoopTools{replays_.mailbox, replays_.demand, with.executor, with.clock},
-                                         std::move(with.outputs), std::move(with.file), std::move(with.laboratory)));
+                                         std::move(with.outputs), job_turns_, std::move(with.file),
+                                         std::move(with.laboratory)));
         return;
     }
     LoopOutputs of_replays = with.outputs;
@@ -28,7 +29,7 @@ void Simulations::start(Start with) {
     replays_.thread = std::make_unique<SimulationThread>(
         SimulationThread::Options{.name = "replays", .niceness = replay_niceness}, replays_.mailbox,
         std::make_unique<ReplayLoop>(LoopTools{replays_.mailbox, replays_.demand, *replay_executor_, with.clock},
-                                     std::move(of_replays)));
+                                     std::move(of_replays), job_turns_));
 }
 
 void Simulations::stop() {

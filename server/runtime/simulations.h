@@ -11,6 +11,7 @@
 
 #include "server/metrics/worlds.h"
 #include "server/runtime/demand.h"
+#include "server/runtime/job_turns.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
 #include "server/runtime/replay_loop.h"
@@ -23,6 +24,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <thread>
 
 namespace evod::runtime {
 
@@ -68,6 +70,8 @@ class Simulations {
 
     /// The places in the mailbox of the live worlds, by user.
     base::Quota mailbox_places() const { return (shows_file_ ? replays_ : live_).mailbox.places(); }
+    /// The turns of all background jobs that compute.
+    JobTurns& job_turns() { return job_turns_; }
     /// Calls `use` with the name and the handle of each running thread. Must not be called after stop().
     void for_each_thread(const std::function<void(const char* name, pthread_t)>& use);
 
@@ -82,6 +86,8 @@ class Simulations {
 
   private:
     const bool shows_file_;
+    SteadyClock job_clock_;
+    JobTurns job_turns_{JobTurns::count_for(std::thread::hardware_concurrency()), job_clock_};
     std::unique_ptr<base::Executor> replay_executor_;
     Part live_, replays_;
     UnwrittenReplies unwritten_;

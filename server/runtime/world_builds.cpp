@@ -23,11 +23,14 @@ void WorldBuilds::begin(Order order) {
     }
     const std::uint64_t number = ++last_number_;
     builds_.emplace(number, Build{order.name, order.original, std::exchange(order.adopt, {})});
-    jobs_.add([&mailbox = mailbox_, number, order = std::move(order)](const std::stop_token&) {
-        base::InlineExecutor executor; // the threads of the pool belong to the worlds that advance
-        auto world = build(order, executor, [&] { mailbox.push(WorldBuilt{number, nullptr}); });
-        mailbox.push(WorldBuilt{number, std::make_shared<base::Result<BuiltWorld>>(std::move(world))});
-    });
+    const std::string user = order.user;
+    jobs_.add(
+        [&mailbox = mailbox_, number, order = std::move(order)](const std::stop_token&) {
+            base::InlineExecutor executor; // the threads of the pool belong to the worlds that advance
+            auto world = build(order, executor, [&] { mailbox.push(WorldBuilt{number, nullptr}); });
+            mailbox.push(WorldBuilt{number, std::make_shared<base::Result<BuiltWorld>>(std::move(world))});
+        },
+        user);
 }
 
 bool WorldBuilds::holds(std::string_view world) const {

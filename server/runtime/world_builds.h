@@ -4,7 +4,7 @@
 //   begin → construct, and read the original → finish → adopt, between two ticks
 //
 // Owner        the simulation loop, on the simulation thread.
-// Threads      one build thread. It returns the worlds through the mailbox. While it reads a world, that world neither
+// Threads      one build thread, which serves users in turn. It returns the worlds through the mailbox. While it reads a world, that world neither
 //              advances nor changes, because the loop asks holds().
 // Order        the loop keeps a command to a world that holds() names until that world is free. So a client sees the
 //              same results as if the world had been constructed at once.
@@ -28,6 +28,7 @@ class WorldBuilds {
     static constexpr std::uint64_t genes_built_at_once_max = 10'000;
 
     struct Order {
+        std::string user = {};                 // whose turn of the build thread it takes
         std::string name = {};                 // of the world that will be adopted
         std::string original = {};             // the world that `construct` reads; empty if it reads none
         bool at_once = false;                  // on the simulation thread, also if the world is large

@@ -117,7 +117,8 @@ WatchedServer::WatchedServer()
     , replays_{{simulations_.mailbox_of("w@1"), simulations_.part_of("w@1").demand, executor_, clock()},
                {.events = [](auto&&...) {},
                 .snapshot = [](runtime::SnapshotPtr) {},
-                .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); }}} {
+                .reply = [this](runtime::Reply reply) { outbox_.reply(std::move(reply)); }},
+               simulations_.job_turns()} {
     drawn = 0;
     host_.limits = network::limits_message({});
     host_.instance_id = "fuzz";

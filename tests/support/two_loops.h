@@ -23,7 +23,9 @@ class TwoLoops {
              recording::Recorder* recorder = nullptr)
         : on_answer_{std::move(on_answer)}
         , live{{live_.mailbox, live_.demand, executor, clock}, with_reply(outputs), std::move(laboratory), recorder}
-        , replays{{replays_.mailbox, replays_.demand, executor, clock}, of_replays(with_reply(outputs))} {}
+        , replays{{replays_.mailbox, replays_.demand, executor, clock},
+                  of_replays(with_reply(outputs)),
+                  simulations.job_turns()} {}
 
     runtime::Simulations simulations{false};
     /// Sees every reply, on the thread that gives it. Returns whether it has handled the reply.
@@ -44,7 +46,9 @@ class TwoLoops {
         for (runtime::Reply& reply : posted) {
             auto answer = simulations.pass_on(std::move(reply));
             if (auto* done = answer ? std::get_if<runtime::CommandDone>(&*answer) : nullptr; done && done->fork) {
-                answer = check_fork(std::move(*done));
+                const std::stop_token never;
+                runtime::JobTurns::Turn turn{simulations.job_turns(), {}, never};
+                answer = check_fork(std::move(*done), turn);
             }
             if (answer) {
                 on_answer_(*std::move(answer));

@@ -2,7 +2,10 @@
 MESSAGES the folder of the message classes."""
 import contextlib
 import pathlib
+import shutil
+import signal
 import sqlite3
+import subprocess
 import sys
 import unittest
 
@@ -59,6 +62,31 @@ class Damaged(Runs):
                 self.assertEqual((done.returncode, done.stdout), (1, written))
                 self.assertIn("is damaged: ", done.stderr)
         self.assertFalse(pathlib.Path(self.folder, "bundle").exists())
+
+
+class Interrupted(Runs):
+    def test_unfinished_output_is_not_left_behind(self):
+        server, client = self.serve()
+        self.run_world(client, 100, generation_s=1.0)
+        server.end()
+        run = pathlib.Path(self.folder, "w.evod")
+        for words, name in ((["--bundle"], "bundle"), (["--what", "organisms", "--output"], "organisms.csv")):
+            whole, part = pathlib.Path(self.folder, name), pathlib.Path(self.folder, name + ".part")
+            for how in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
+                with subprocess.Popen([EVOD, "export", run, *words, whole]) as export:
+                    self.addCleanup(export.kill)
+                    first = part / "experiment.json" if name == "bundle" else part
+                    waiting.until(lambda: export.poll() is not None or first.exists(), "a part of the output")
+                    export.send_signal(how)
+                    if waiting.ended(export) == 0:  # it was complete before the signal
+                        shutil.rmtree(whole) if whole.is_dir() else whole.unlink()
+                        continue
+                with self.subTest(name=name, how=how):
+                    self.assertFalse(whole.exists())
+                    self.assertEqual(part.exists(), how == signal.SIGKILL)
+            self.evod_export(*words, str(whole))
+            self.assertTrue(whole.exists())
+            self.assertFalse(part.exists())
 
 
 class Export(Runs):
@@ -169,7 +197,8 @@ class Export(Runs):
         client.call(NOT_FOUND, continue_export=c.ContinueExport(export_id=first.export_id))
         client.call(continue_export=c.ContinueExport(export_id=second.export_id))
         exports_max = client.welcome.limits.exports_max
-        others = [self.client(server) for _ in range(exports_max)]
+        client.socket.close()
+        others = [self.client(server) for _ in range(exports_max // 2 + 1)]  # a user has at most half of them
 
         def begins(asking):
             return asking.response(asking.ask(export_run=organisms)).status.code == 0

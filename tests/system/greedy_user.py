@@ -283,6 +283,12 @@ def mailbox():
     of_sessions(next_request, 32, taken=40, number=40)
 
 
+def frames():
+    """The longest messages that a viewer may send, with as many parts as possible."""
+    parts = [w.ParameterAssignment()] * ((63 << 10) // 2)
+    of_sessions(lambda *_: {"create_world": c.CreateWorld(name="x", parameters=parts)}, 4, taken=SESSIONS)
+
+
 def answers():
     """Answers under more keys than the reply cache has."""
     keys = itertools.count()
@@ -323,7 +329,7 @@ def events():
 
 FAR = int(os.environ.get("FAR_TICK", 100))
 attacks = {attack.__name__: attack for attack in (
-    sessions, strangers, http, replays, seeks, exports, simulated_exports, breeding, queries, mailbox, answers, memory, events)}
+    sessions, strangers, http, replays, seeks, exports, simulated_exports, breeding, queries, mailbox, frames, answers, memory, events)}
 if __name__ == "__main__":
     try:
         attacks[pool]()

@@ -322,6 +322,7 @@ class Health(Case):
             ill = plain.until(lambda: (lambda a: a if a.status != 200 else None)(self.get(server, "/healthz")), "illness")
             self.assertEqual(ill.status, 503)
             self.assertRegex(ill.text, r"^runs cannot be written: [^\n]*default\.evod[^\n]*\n$")
+            self.assertNotIn(self.folder, ill.text)
             metrics = self.wait(server, lambda m: m("evod_storage_state", state="failing") == 1, "a failing disk")
             first = metrics("evod_journal_lag_seconds")
             self.wait(server, lambda m: m("evod_journal_lag_seconds") > max(first, 0.5), "a growing lag")

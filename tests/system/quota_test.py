@@ -29,7 +29,7 @@ MEMORY_BYTES = 1 << 62 if os.environ.get("SANITIZED") else plain.limit("client_b
 POOLS = {  # what each attack of greedy_user.py takes, and the address of Ada, who otherwise shares that of Eve
     "sessions": "127.0.0.1", "strangers": "127.0.0.2", "http": "127.0.0.2", "replays": "127.0.0.1", "seeks": "127.0.0.1",
     "exports": "127.0.0.1", "simulated_exports": "127.0.0.1", "breeding": "127.0.0.1", "queries": "127.0.0.1",
-    "mailbox": "127.0.0.1", "answers": "127.0.0.1", "memory": "127.0.0.1", "events": "127.0.0.1"}
+    "mailbox": "127.0.0.1", "frames": "127.0.0.1", "answers": "127.0.0.1", "memory": "127.0.0.1", "events": "127.0.0.1"}
 
 
 class Client(past.Client):
@@ -268,6 +268,9 @@ class Pools(unittest.TestCase):
 
     def test_requests_in_the_mailbox(self):
         self.attacked("mailbox")
+
+    def test_the_time_for_long_messages(self):
+        self.attacked("frames")
 
     def test_cached_answers(self):
         self.attacked("answers")

@@ -158,6 +158,24 @@ class Run(Recorded):
         self.assertEqual(process.wait(), 130)
         self.assertTrue(evod(*words).stdout.startswith(seed))
 
+    def test_a_csv_file_has_its_name_when_it_is_complete(self):
+        part = self.csv.with_name("ring.csv.part")
+        words = [EVOD, "run", "--seed", "1", "--set", "population_size=10", "--set", "generation_s=1", "--csv", str(self.csv)]
+        for how, status in ((signal.SIGKILL, -signal.SIGKILL), (signal.SIGTERM, 130), (signal.SIGINT, 130)):
+            self.csv.write_text("another run")
+            with subprocess.Popen(words, stdout=subprocess.DEVNULL) as process:
+                self.addCleanup(process.kill)
+                waiting.until(lambda: part.exists() and part.read_text().count("\n") > 5, "rows")
+                self.assertEqual(self.csv.read_text(), "another run")
+                process.send_signal(how)
+                self.assertEqual(waiting.ended(process), status)
+            if how == signal.SIGKILL:
+                self.assertEqual(self.csv.read_text(), "another run")
+                part.write_text("what the ended program has left")
+            else:
+                self.assertGreater(self.csv.read_text().count("\n"), 5)
+                self.assertFalse(part.exists())
+
     def test_a_run_that_was_killed_continues(self):
         chance = random.Random(1)
         for kill in range(KILLS):

@@ -23,42 +23,98 @@ namespace evod::viewer {
 
 namespace {
 
+namespace fs = std::filesystem;
+
+bool is_frame(const std::string& name) {
+    return name.starts_with("frame-") && (name.ends_with(".png") || name.ends_with(".png.part"));
+}
+
+/// Writes single frames. They get the folder's name when all are there.
 class FolderWriter final : public FrameWriter {
   public:
-    explicit FolderWriter(const std::string& path) : path_{path} {
-        std::error_code error;
-        std::filesystem::create_directories(path_, error);
-        if (error) {
-            throw std::runtime_error{"could not create the folder " + path + ": " + error.message()};
-        }
-        for (const auto& entry : std::filesystem::directory_iterator{path_, error}) {
-            const std::string name = entry.path().filename().string();
-            if (name.starts_with("frame-") && name.ends_with(".png")) {
+    explicit FolderWriter(const std::string& path)
+        : path_{fs::path{path}.has_filename() ? fs::path{path} : fs::path{path}.parent_path()}
+        , part_{path_.string() + ".part"} {
+        for (const std::string& name : names_in(path_)) {
+            if (is_frame(name)) {
                 throw std::runtime_error{path + " contains frames of an earlier recording, such as " + name +
                                          ": choose another folder"};
             }
         }
+        for (const std::string& name : names_in(part_)) {
+            if (!is_frame(name)) {
+                throw std::runtime_error{part_.string() + " exists, and is not an unfinished recording: move it away"};
+            }
+        }
+        std::error_code error;
+        fs::remove_all(part_, error);
+        if (!error) {
+            fs::create_directories(part_, error);
+        }
         if (error) {
-            throw std::runtime_error{"could not read the folder " + path + ": " + error.message()};
+            throw std::runtime_error{"could not create the folder " + part_.string() + ": " + error.message()};
         }
     }
+    ~FolderWriter() override {
+        std::error_code ignored; // finish() has moved all that is wanted
+        fs::remove_all(part_, ignored);
+    }
+    FolderWriter(const FolderWriter&) = delete;
+    FolderWriter& operator=(const FolderWriter&) = delete;
 
     void add(const sf::Image& frame, std::uint64_t tick) override {
-        write_file((path_ / frame_file_name(frame_count_, tick)).string(), png_of(frame));
+        write_file((part_ / frame_file_name(frame_count_, tick)).string(), png_of(frame));
         ++frame_count_;
     }
 
-    void finish() override {}
+    void finish() override {
+        std::error_code error;
+        if (!fs::exists(path_, error)) {
+            fs::rename(part_, path_, error);
+        } else {
+            for (const std::string& name : names_in(part_)) {
+                fs::rename(part_ / name, path_ / name, error);
+                if (error) {
+                    break;
+                }
+            }
+        }
+        if (error) {
+            throw std::runtime_error{"could not write " + path_.string() + ": " + error.message()};
+        }
+    }
 
   private:
-    std::filesystem::path path_;
+    /// The names of the files in a folder; none if it does not exist.
+    static std::vector<std::string> names_in(const fs::path& folder) {
+        std::error_code error;
+        std::vector<std::string> names;
+        if (fs::exists(folder, error) && !error) {
+            for (const auto& entry : fs::directory_iterator{folder, error}) {
+                names.push_back(entry.path().filename().string());
+            }
+        }
+        if (error) {
+            throw std::runtime_error{"could not read the folder " + folder.string() + ": " + error.message()};
+        }
+        return names;
+    }
+
+    fs::path path_, part_;
 };
 
-/// Writes a film: sends raw frames through a pipe to ffmpeg.
+/// Writes a film: sends raw frames through a pipe to ffmpeg. The film gets its name when it is complete.
 class FilmWriter final : public FrameWriter {
   public:
     FilmWriter(std::string path, unsigned width_pixels, unsigned height_pixels, double fps)
         : path_{std::move(path)}, output_{std::tmpfile()} {
+        std::error_code error_of_link;
+        if (const fs::path target = fs::canonical(path_, error_of_link); !error_of_link) {
+            path_ = target.string(); // renaming would replace a link
+        }
+        // ffmpeg chooses the format by the ending.
+        const fs::path whole{path_};
+        part_ = (whole.parent_path() / (whole.stem().string() + ".part" + whole.extension().string())).string();
         std::array<int, 2> ends{-1, -1};
         if (output_ == nullptr || pipe2(ends.data(), O_CLOEXEC) != 0) {
             throw std::runtime_error{std::string{"could not start ffmpeg: "} + std::strerror(errno)};
@@ -76,7 +132,7 @@ class FilmWriter final : public FrameWriter {
         if (!path_.ends_with(".gif")) {
             words.insert(words.end(), {"-pix_fmt", "yuv420p"}); // every player supports this pixel format
         }
-        words.push_back("file:" + path_);
+        words.push_back("file:" + part_);
         std::vector<char*> arguments;
         for (std::string& word : words) {
             arguments.push_back(word.data());
@@ -104,7 +160,10 @@ class FilmWriter final : public FrameWriter {
                                      "): install ffmpeg, or choose a folder for single frames"};
         }
     }
-    ~FilmWriter() override { stop(); }
+    ~FilmWriter() override {
+        stop();
+        ::unlink(part_.c_str()); // finish() has renamed a complete film
+    }
     FilmWriter(const FilmWriter&) = delete;
     FilmWriter& operator=(const FilmWriter&) = delete;
 
@@ -129,6 +188,9 @@ class FilmWriter final : public FrameWriter {
     void finish() override {
         const int status = stop();
         if (status == 0) {
+            if (std::rename(part_.c_str(), path_.c_str()) != 0) {
+                throw std::runtime_error{"could not write " + path_ + ": " + std::strerror(errno)};
+            }
             return;
         }
         std::string output(2000, '\0');
@@ -158,7 +220,7 @@ class FilmWriter final : public FrameWriter {
         return status;
     }
 
-    std::string path_;
+    std::string path_, part_; // the names of the complete and of the unfinished film
     struct Close {
         void operator()(FILE* file) const { std::fclose(file); }
     };

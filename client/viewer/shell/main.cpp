@@ -5,6 +5,7 @@
 #include "client/viewer/shell/screenshot.h"
 #include "client/viewer/shell/start_screen.h"
 #include "client/viewer/shell/window.h"
+#include "proto/command_line/exhaustion.h"
 
 #include <exception>
 #include <iostream>
@@ -51,6 +52,7 @@ void run(Options options) {
 
 int main(int argc, char** argv) {
     using namespace evod::viewer;
+    evod::command_line::end_when_exhausted("evoview: out of memory or threads\n", 1);
     try {
         const auto parsed = parse_options(argc, argv);
         if (const int* status = std::get_if<int>(&parsed)) {

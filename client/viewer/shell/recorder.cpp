@@ -240,7 +240,7 @@ class Recorder {
 
 void record(const Options& options, const Options::Record& wanted) {
     sf::Context context{context_settings(), 1, 1};
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         std::signal(signal, [](int) { interrupted = 1; });
     }
     Recorder{options, wanted}.run();

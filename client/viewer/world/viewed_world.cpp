@@ -173,6 +173,9 @@ std::string ViewedWorld::link() const {
         return "";
     }
     const std::string original = replay.info() ? replay.info()->replay_of() : "";
+    if (!core::fits_into_url(original) || !core::fits_into_url(snapshot->about.world())) {
+        return "";
+    }
     core::PageMoment moment{.world = original.empty() ? snapshot->about.world() : original,
                             .generation = snapshot->about.generation(),
                             .tick = snapshot->about.generation_tick(),

@@ -126,7 +126,8 @@ struct FfmpegTest : RecordTest {
 };
 
 TEST_F(FfmpegTest, ReceivesEveryFrameComplete) {
-    install(R"(echo "$@" >"${0%/*}/words"; for last; do :; done; cat >"${last#file:}")");
+    install(
+        R"(echo "$@" >"${0%/*}/words"; for last; do :; done; cat >"${last#file:}"; ls "${0%/*}/.." >"${0%/*}/names")");
     const Ran ran = record(folder.file("film.mp4"), "--record-ticks 2 --fps 30");
     ASSERT_EQ(ran.status, 0) << ran.output;
     EXPECT_EQ(std::filesystem::file_size(folder.file("film.mp4")), 3u * 640 * 400 * 4);
@@ -134,6 +135,11 @@ TEST_F(FfmpegTest, ReceivesEveryFrameComplete) {
     std::string words;
     std::getline(words_file, words);
     EXPECT_NE(words.find("-pix_fmt rgba -s 640x400 -r 30"), std::string::npos) << words;
+    std::ifstream names_file{folder.file("bin/names")};
+    const std::string names{std::istreambuf_iterator<char>{names_file}, {}};
+    EXPECT_NE(names.find("film.part.mp4\n"), std::string::npos) << names;
+    EXPECT_EQ(names.find("film.mp4\n"), std::string::npos) << "the film has its name before it is complete";
+    EXPECT_FALSE(std::filesystem::exists(folder.file("film.part.mp4")));
     std::ifstream film{folder.file("film.mp4"), std::ios::binary};
     for (const std::uint64_t tick : {50u, 51u, 52u}) {
         std::vector<sf::Uint8> pixels(640 * 400 * 4);
@@ -146,13 +152,16 @@ TEST_F(FfmpegTest, ReceivesEveryFrameComplete) {
 }
 
 TEST_F(FfmpegTest, ReportsTheMessageOfAFailedFfmpeg) {
-    install("head -c 100 >/dev/null; echo 'film.mp4: No space left on device' >&2; exit 3");
+    install(
+        "for last; do :; done; head -c 100 >\"${last#file:}\"; echo 'film.mp4: No space left on device' >&2; exit 3");
     const Ran ran = record(folder.file("film.mp4"), "--record-ticks 20");
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.output.find("could not write " + folder.file("film.mp4") +
                               ": ffmpeg ended with status 3: film.mp4: No space"),
               std::string::npos)
         << ran.output;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("film.mp4")));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("film.part.mp4")));
     EXPECT_EQ(state().state(), evod::v1::RUN_STATE_PAUSED);
 }
 

@@ -34,6 +34,18 @@ TEST(NumberCheck, LimitsOfParametersAreFinite) {
     }
 }
 
+TEST(NumberCheck, CountsHaveALimit) {
+    v1::ServerMessage message;
+    auto& breeding = *message.mutable_response()->mutable_breeding();
+    breeding.set_pick_count(1U << 28);
+    EXPECT_EQ(field_without_number(message), "");
+    breeding.set_pick_count(1'500'000'000);
+    EXPECT_EQ(field_without_number(message), "evod.v1.Breeding.pick_count");
+    v1::WorldInfo world;
+    world.set_island_count(std::numeric_limits<std::uint32_t>::max());
+    EXPECT_EQ(field_without_number(world), "evod.v1.WorldInfo.island_count");
+}
+
 TEST(NumberCheck, InfinityIsANumberElsewhere) {
     v1::LiveStatistics statistics;
     statistics.set_health_mean(infinite);

@@ -19,6 +19,22 @@ TEST(PageLink, NamesTheHostOfTheServerOrOfTheClient) {
     EXPECT_EQ(page_of(welcome(0), {.host = "lab"}, false), "");
 }
 
+TEST(PageLink, NamesOnlyHosts) {
+    for (const char* host : {"\x1b]8;;x\x07", "a/b", "a@b", "lab?", "\u202elab", "a b"}) {
+        EXPECT_EQ(page_of(welcome(7745, host), {.host = "lab"}, false), "") << host;
+    }
+    for (const char* text : {"\x1b[2J", "a b", "a#b", "\u202ea"}) {
+        EXPECT_FALSE(fits_into_url(text)) << text;
+    }
+    EXPECT_TRUE(fits_into_url("default@1"));
+}
+
+TEST(PageLink, SaysIfThePageIsAtAnotherHost) {
+    EXPECT_EQ(other_page_host(welcome(7745), {.host = "lab"}), "");
+    EXPECT_EQ(other_page_host(welcome(7745, "lab"), {.host = "lab"}), "");
+    EXPECT_EQ(other_page_host(welcome(7745, "192.0.2.1"), {.host = "lab"}), "192.0.2.1");
+}
+
 TEST(PageLink, ContainsAMoment) {
     const std::string page = "http://lab:7745/";
     EXPECT_EQ(link_of(page, {.world = "default"}), page + "#world=default");

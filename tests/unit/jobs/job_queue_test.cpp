@@ -65,6 +65,55 @@ TEST(JobQueue, RunsAtMostSoManyJobsAtATime) {
     EXPECT_FALSE(too_many);
 }
 
+TEST(JobQueue, ServesUsersInTurn) {
+    std::vector<std::string> done;
+    std::promise<void> begun, may_end, all_done;
+    JobQueue queue{{.name = "test"}};
+    queue.add(
+        [&](const std::stop_token&) {
+            begun.set_value();
+            may_end.get_future().wait();
+        },
+        "eve");
+    begun.get_future().wait();
+    for (const char* user : {"eve", "eve", "eve", "ada", "bob"}) {
+        queue.add(
+            [&, user](const std::stop_token&) {
+                done.push_back(user);
+                if (done.size() == 5) {
+                    all_done.set_value();
+                }
+            },
+            user);
+    }
+    may_end.set_value();
+    all_done.get_future().wait();
+    EXPECT_EQ(done, (std::vector<std::string>{"eve", "ada", "bob", "eve", "eve"}));
+}
+
+TEST(JobQueue, AUserHasAtMostSoManyThreads) {
+    std::atomic<int> of_eve = 0;
+    std::atomic<bool> too_many = false;
+    std::promise<void> ada_done, eve_done;
+    std::shared_future<void> ada_has_run = ada_done.get_future().share();
+    JobQueue queue{{.name = "test", .threads_max = 4, .threads_per_user_max = 2}};
+    for (int i = 0; i < 6; ++i) {
+        queue.add(
+            [&, i](const std::stop_token&) {
+                too_many = too_many || ++of_eve > 2;
+                ada_has_run.wait();
+                --of_eve;
+                if (i == 5) {
+                    eve_done.set_value();
+                }
+            },
+            "eve");
+    }
+    queue.add([&](const std::stop_token&) { ada_done.set_value(); }, "ada");
+    eve_done.get_future().wait();
+    EXPECT_FALSE(too_many);
+}
+
 TEST(JobQueue, ACancelledJobSeesItsStopToken) {
     JobQueue queue{{.name = "test"}};
     std::promise<void> ended;

@@ -40,7 +40,7 @@ class BreedingTest : public testing::TestWithParam<std::uint64_t> {
     }
 
     base::Result<Bred> breeding(std::optional<std::uint64_t> generation, std::uint32_t island = 0,
-                                const std::stop_token& stop = {}) {
+                                const base::StopCheck& stop = {}) {
         return breeding_of(*opened,
                            {.generation = generation, .seen_from = 5, .island = island, .rows = {.count_max = ~0u}},
                            executor, stop);
@@ -137,9 +137,7 @@ INSTANTIATE_TEST_SUITE_P(Storage, WhollyRetained, testing::Values(1));
 using RetainedInPart = BreedingTest;
 
 TEST_P(RetainedInPart, ACancelledRequestStopsTheSimulation) {
-    std::stop_source stop;
-    stop.request_stop();
-    const auto refused = breeding(2, 0, stop.get_token());
+    const auto refused = breeding(2, 0, base::StopCheck{[] { return true; }});
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, base::RefusalCode::Unavailable);
 }

@@ -1,6 +1,8 @@
-// Run tables of files of another model version that do not retain every generation.
+// Run tables of files that do not retain every generation, most of them of another model version.
 #include "server/base/inline_executor.h"
 #include "server/replay/run_tables.h"
+#include "server/replay/stored_run.h"
+#include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
 #include "tests/unit/replay/other_model.h"
 
@@ -58,6 +60,60 @@ class OtherModel : public testing::Test {
     std::unique_ptr<run_file::RunFile> file;
     std::vector<std::string> lines;
 };
+
+/// Every table asks often whether it is to stop, also about generations that it leaves out.
+TEST_F(OtherModel, StoppedTablesEndAtTheNextGeneration) {
+    record(recording::small_world());
+    for (const RunTable table : {RunTable::Generations, RunTable::Organisms, RunTable::Lineage, RunTable::Population}) {
+        int asked = 0, allowed = 1'000'000;
+        const base::StopCheck stop{[&] { return ++asked > allowed; }};
+        std::ostringstream whole, part;
+        const WantedTable wanted{.table = table};
+        ASSERT_TRUE(write_table({*file, executor, stop}, wanted, whole));
+        const int needed = asked;
+        EXPECT_GE(needed, table == RunTable::Population ? 1 : 8) << "as many as there are generations";
+        for (allowed = 0; allowed < needed; ++allowed) {
+            asked = 0;
+            part.str("");
+            const auto written = write_table({*file, executor, stop}, wanted, part);
+            ASSERT_FALSE(written);
+            EXPECT_EQ(written.error().code, RefusalCode::Unavailable);
+            EXPECT_EQ(asked, allowed + 1) << "it ends at once";
+        }
+    }
+    int asked = 0;
+    EXPECT_LE(generations_out_of_reach(*file, base::StopCheck{[&] { return ++asked > 3; }}), 3u);
+    EXPECT_EQ(asked, 4);
+}
+
+TEST(RunTables, StoppedWorkEndsAmidTheJournalOrASimulation) {
+    const recording::TemporaryFolder folder;
+    run_file::DataFolder data{*run_file::DataFolder::open(folder.path())};
+    RunFile::Options options;
+    options.keep_every = 1'000'000;
+    recording::StorageThread thread{options};
+    recording::RecordedRun run{data, thread};
+    while (run.world().moment().generation <= 5) {
+        run.advance(1);
+    }
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    ASSERT_TRUE(file);
+    ASSERT_TRUE((*file)->pin_snapshot());
+    base::InlineExecutor executor;
+    int asked = 0;
+    std::ostringstream text;
+    const base::StopCheck stop{[&] { return ++asked > 100; }};
+    const auto written = write_table({**file, executor, stop}, {.table = RunTable::Population, .generation = 4}, text);
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, RefusalCode::Unavailable);
+    EXPECT_EQ(asked, 101);
+    EXPECT_EQ(world_changes(**file, 0, base::StopCheck{[] { return true; }}).error().code, RefusalCode::Unavailable);
+    const StoredRun stored{{data.file_of("w")}, (*file)->identity().run_id};
+    EXPECT_EQ(stored.start_seek({}, {}, executor, base::StopCheck{[] { return true; }}).error().code,
+              RefusalCode::Unavailable);
+    EXPECT_EQ(stored.new_records(0, base::StopCheck{[] { return true; }}).error().code, RefusalCode::Unavailable);
+}
 
 TEST_F(OtherModel, LineageLeavesOutWhatIsPurgedOrUnknown) {
     parameters::Parameters parameters = recording::small_world();

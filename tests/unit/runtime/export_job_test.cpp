@@ -57,14 +57,17 @@ class ExportJobTest : public testing::Test {
     base::InlineExecutor executor;
     Outbox outbox{[] {}};
     std::uint64_t last_request_id = 0;
+    SteadyClock clock;
+    JobTurns turns{1, clock};
     jobs::JobQueue jobs{{.name = "export", .threads_max = 8}};
+    const ExportJob::Tools tools{jobs, turns, outbox};
     std::optional<replay::StoredRun> past;
 };
 
 TEST_F(ExportJobTest, PartsPutTogetherAreTheTable) {
     record(300, 100);
     const replay::WantedTable wanted{.table = RunTable::Organisms, .format = replay::Table::Format::JsonLines};
-    ExportJob thread{jobs, outbox, *past, wanted};
+    ExportJob thread{tools, "ada", *past, wanted};
     std::string text;
     int parts = 0;
     for (bool last = false; !last; ++parts) {
@@ -84,7 +87,7 @@ TEST_F(ExportJobTest, ReportsHowManyGenerationsAreLeftOut) {
     past.emplace(std::vector{data.file_of("w")}, run_id);
     for (const auto& [table, left_out] :
          {std::pair{RunTable::Organisms, 4u}, std::pair{RunTable::Lineage, 4u}, std::pair{RunTable::Generations, 0u}}) {
-        ExportJob thread{jobs, outbox, *past, {.table = table}};
+        ExportJob thread{tools, "ada", *past, {.table = table}};
         const auto part = next(thread);
         ASSERT_TRUE(part) << to_text(part.error());
         EXPECT_EQ(part->generations_left_out, left_out);
@@ -93,7 +96,7 @@ TEST_F(ExportJobTest, ReportsHowManyGenerationsAreLeftOut) {
 
 TEST_F(ExportJobTest, AnErrorIsReportedInsteadOfAPart) {
     record(2);
-    ExportJob thread{jobs, outbox, *past, {.table = RunTable::Population, .generation = 7}};
+    ExportJob thread{tools, "ada", *past, {.table = RunTable::Population, .generation = 7}};
     const auto part = next(thread);
     ASSERT_FALSE(part);
     EXPECT_EQ(part.error().code, RefusalCode::NotFound);
@@ -102,7 +105,7 @@ TEST_F(ExportJobTest, AnErrorIsReportedInsteadOfAPart) {
 
 TEST_F(ExportJobTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
     record(300);
-    ExportJob thread{jobs, outbox, *past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
+    ExportJob thread{tools, "ada", *past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
     ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
     const auto part = next(thread);
     ASSERT_FALSE(part);
@@ -111,11 +114,60 @@ TEST_F(ExportJobTest, AnAbandonedExportIsCancelledAndNeverCutShort) {
 
 TEST_F(ExportJobTest, StoppingEndsASimulationUnderWay) {
     record(300, 1'000'000); // all but the first and the last are simulated again
-    ExportJob thread{jobs, outbox, *past, {.table = RunTable::Population, .generation = 299}};
-    thread.request_stop();
+    ExportJob thread{tools, "ada", *past, {.table = RunTable::Population, .generation = 299}};
+    thread.cancel(refusal(RefusalCode::Aborted, "not wanted"));
     const auto part = next(thread);
     ASSERT_FALSE(part);
     ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
+}
+
+TEST_F(ExportJobTest, ACancelledExportSaysWhy) {
+    record(300);
+    ExportJob thread{tools, "ada", *past, {.table = RunTable::Organisms}};
+    const std::stop_token never;
+    ASSERT_TRUE(next(thread));
+    JobTurns::Turn holds_all{turns, "test", never}; // once the job waits for its client, or for its turn
+    thread.next({.session = 3, .request_id = 9, .export_id = 7});
+    thread.cancel(refusal(RefusalCode::Aborted, "another user needs the place"));
+    ASSERT_TRUE(wait_until([&] { return thread.finished(); })) << "a cancelled job needs no turn";
+    bool is_reported = false;
+    for (const Delivery& delivery : outbox.take().deliveries) {
+        const auto& part = std::get<ExportPartDone>(std::get<Reply>(delivery)).part;
+        EXPECT_TRUE(!part || !part->last) << "a table that is cut short must not look complete";
+        is_reported = !part && part.error().message == "another user needs the place";
+    }
+    EXPECT_TRUE(is_reported);
+}
+
+TEST_F(ExportJobTest, CancellingNeverMakesATableLookComplete) {
+    record(300);
+    for (int i = 0; i < 20; ++i) {
+        ExportJob thread{tools, "ada", *past, {.table = RunTable::Organisms}};
+        thread.next({.session = 3, .request_id = 9, .export_id = 7});
+        for (int nap = 0; nap < i; ++nap) {
+            take_a_nap();
+        }
+        thread.cancel(refusal(RefusalCode::Aborted, "not wanted"));
+        ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
+        for (const Delivery& delivery : outbox.take().deliveries) {
+            const auto& part = std::get<ExportPartDone>(std::get<Reply>(delivery)).part;
+            EXPECT_TRUE(!part || !part->last);
+        }
+    }
+}
+
+TEST_F(ExportJobTest, AnExportThatWaitsForItsClientLetsOthersCompute) {
+    record(300);
+    const replay::WantedTable wanted{.table = RunTable::Organisms};
+    ExportJob slow{tools, "eve", *past, wanted}; // computes its second part, then waits
+    ASSERT_TRUE(next(slow));
+    ExportJob quick{tools, "ada", *past, wanted};
+    for (bool last = false; !last;) {
+        const auto part = next(quick);
+        ASSERT_TRUE(part) << to_text(part.error());
+        last = part->last;
+    }
+    EXPECT_FALSE(slow.finished());
 }
 
 } // namespace

@@ -30,7 +30,11 @@ class ForkCheckTest : public testing::Test {
                          .outcome = simulation::Applied{.world = "fork", .tick = 70, .parameters = {}},
                          .frame = "forked",
                          .fork = ForkFile{{path, path + "-ended"}, run_id, expected}};
-        const CommandDone answer = check_fork(std::move(done));
+        SteadyClock clock;
+        JobTurns turns{1, clock};
+        const std::stop_token stop;
+        JobTurns::Turn turn{turns, "ada", stop};
+        const CommandDone answer = check_fork(std::move(done), turn);
         EXPECT_FALSE(answer.fork);
         EXPECT_EQ(answer.frame == "forked", answer.outcome.has_value());
         return answer.outcome;

@@ -71,10 +71,44 @@ TEST_F(FrameWriterTest, WritesOneFilePerFrame) {
     writer->add(coloured(20, 10), 63);
     writer->finish();
     EXPECT_EQ(writer->frame_count(), 2u);
+    EXPECT_FALSE(std::filesystem::exists(path + ".part"));
     sf::Image read;
     ASSERT_TRUE(read.loadFromFile(path + "/frame-000001-tick-63.png"));
     expect_same(read, coloured(20, 10));
     EXPECT_TRUE(std::filesystem::exists(path + "/frame-000000-tick-60.png"));
+}
+
+TEST_F(FrameWriterTest, UnfinishedFramesAreNotInTheFolder) {
+    const std::string path = (folder / "frames").string();
+    {
+        const auto writer = open_frame_writer(path + "/", 20, 10, 60);
+        writer->add(coloured(20, 10), 60);
+        EXPECT_FALSE(std::filesystem::exists(path));
+        EXPECT_TRUE(std::filesystem::exists(path + ".part/frame-000000-tick-60.png"));
+    }
+    EXPECT_FALSE(std::filesystem::exists(path + ".part"));
+}
+
+TEST_F(FrameWriterTest, ReplacesFramesOfAnEndedProgram) {
+    const std::string path = (folder / "frames").string();
+    std::filesystem::create_directories(path + ".part");
+    std::ofstream{path + ".part/frame-000009-tick-9.png"} << "old";
+    open_frame_writer(path, 20, 10, 60)->finish();
+    EXPECT_TRUE(std::filesystem::is_empty(path));
+    std::filesystem::create_directories(path + ".part");
+    std::ofstream{path + ".part/letter"} << "not a frame";
+    EXPECT_THAT([&] { open_frame_writer(path, 20, 10, 60); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("move it away")));
+    EXPECT_TRUE(std::filesystem::exists(path + ".part/letter"));
+}
+
+TEST_F(FrameWriterTest, AddsFramesToAFolderWithOtherFiles) {
+    std::ofstream{folder / "notes.txt"} << "mine";
+    const auto writer = open_frame_writer(folder.string(), 20, 10, 60);
+    writer->add(coloured(20, 10), 60);
+    writer->finish();
+    EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "frame-000000-tick-60.png"));
 }
 
 TEST_F(FrameWriterTest, RefusesAFolderWithAnEarlierRecording) {
@@ -91,7 +125,7 @@ TEST_F(FrameWriterTest, ReportsWriteErrorsWithPathAndReason) {
     EXPECT_THAT([&] { open_frame_writer(below, 20, 10, 60); },
                 ThrowsMessage<std::runtime_error>(testing::AllOf(HasSubstr(below), HasSubstr("Not a directory"))));
     const auto writer = open_frame_writer((folder / "gone").string(), 20, 10, 60);
-    std::filesystem::remove(folder / "gone");
+    std::filesystem::remove(folder / "gone.part");
     EXPECT_THAT([&] { writer->add(coloured(20, 10), 7); },
                 ThrowsMessage<std::runtime_error>(
                     testing::AllOf(HasSubstr("frame-000000-tick-7.png"), HasSubstr("No such file or directory"))));
