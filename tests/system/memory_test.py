@@ -165,7 +165,7 @@ class Attacks(access.Access):
         client.socket.close()
         plain.until(lambda: self.counted_mib(admin) < counted + 1, "none is counted")
 
-    def test_queries_that_wait_evict_nobody(self):
+    def test_waiting_queries_evict_no_session(self):
         server, admin = self.begin()
         admin.call(create_world=c.CreateWorld(name="w", seed=1, parameters=plain.assignments(
             population_size=20, generation_s=1)))
