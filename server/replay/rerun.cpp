@@ -153,8 +153,8 @@ Result<void> add_changes(const std::string& path, std::span<const run_file::Jour
 } // namespace
 
 std::size_t bytes_of(const WorldChange& change) {
-    std::size_t bytes =
-        sizeof change + change.by.capacity() + change.assignments.capacity() * sizeof(parameters::Assignment);
+    std::size_t bytes = sizeof change + change.by.user.size() + change.by.program.size() + change.by.address.size() +
+                        change.assignments.capacity() * sizeof(parameters::Assignment);
     if (change.checked) {
         bytes +=
             sizeof *change.checked + std::visit([](const auto& command) { return bytes_of(command); }, *change.checked);

@@ -155,7 +155,7 @@ void CommandHandler::construct(CommandMail& mail, const std::optional<RunBefore>
     }
     constexpr bool is_fork = std::is_same_v<C, simulation::ForkWorld>;
     const C command = std::get<C>(mail.command);
-    WorldBuilds::Order order{.user = run_file::user_of(mail.origin), .construction = *std::move(construction)};
+    WorldBuilds::Order order{.user = mail.user, .construction = *std::move(construction)};
     if (mail.session == 0) {
         order.at_once = true; // the first world of a server: every client must find it
     }
