@@ -81,7 +81,8 @@ Caller::Caller(const Common& common) : timeout_{common.timeout()} {
     core::Options options{.server = endpoint_of(common.server),
                           .client_name = "evoctl",
                           .client_version = EVOD_VERSION,
-                          .connect_timeout = common.timeout()};
+                          .connect_timeout = common.timeout(),
+                          .unreachable_max = common.timeout()};
     if (const auto known = core::apply(common.credentials, options); !known) {
         throw Stop{ExitCode::Usage, known.error().what};
     }
@@ -112,7 +113,12 @@ v1::Response Caller::call(v1::Request request, std::optional<std::chrono::millis
     }
     if (!core::accepted(*response)) {
         const bool wrong = response->status().code() == v1::CODE_INVALID_ARGUMENT;
-        throw Stop{wrong ? ExitCode::Usage : ExitCode::Refused, core::to_text(response->status()), response->status()};
+        // The server has had the command before a reconnection, and may have applied it.
+        const bool expired = response->status().reason() == v1::REASON_REQUEST_TOO_OLD;
+        throw Stop{wrong     ? ExitCode::Usage
+                   : expired ? ExitCode::NoConnection
+                             : ExitCode::Refused,
+                   core::to_text(response->status()), response->status()};
     }
     return *std::move(response);
 }
@@ -139,6 +145,13 @@ v1::Storage Caller::storage() {
         }
     }
     return welcome_.storage(); // there is no world, so none can wait for the disk
+}
+
+void Caller::require_subscribed(core::SubscriptionHandle subscription) const {
+    const auto answer = connection_->subscription_answer(subscription);
+    if (answer && !core::accepted(*answer)) {
+        throw Stop{ExitCode::Refused, core::to_text(answer->status())};
+    }
 }
 
 void Caller::need(const std::string& feature, const std::string& what) const {

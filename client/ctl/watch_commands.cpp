@@ -62,10 +62,9 @@ class WatchDisplay {
         world_ = caller_.world(common_.world);
         v1::SubscribeEvents events;
         events.set_world(world_.name());
-        const auto answer = caller_.connection().wait_subscribed(caller_.connection().subscribe(events));
-        if (answer && !core::accepted(*answer)) {
-            throw Stop{ExitCode::Refused, core::to_text(answer->status())};
-        }
+        const core::SubscriptionHandle subscription = caller_.connection().subscribe(events);
+        (void)caller_.connection().wait_subscribed(subscription);
+        caller_.require_subscribed(subscription);
         if (redraw_) {
             load_past();
         } else {
@@ -81,6 +80,7 @@ class WatchDisplay {
                 take(*event);
             }
             reporter_.report(caller_.connection(), drawing_);
+            caller_.require_subscribed(subscription); // after a reconnection the world may be gone
         }
         if (redraw_ && !ended_) {
             draw();
@@ -357,25 +357,29 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
         subscription.set_world(common.world);
     }
     catch_interrupts();
-    const auto answer =
-        caller.connection().wait_subscribed(caller.connection().subscribe(subscription), caller.timeout());
-    if (!answer) {
+    const core::SubscriptionHandle handle = caller.connection().subscribe(subscription);
+    if (const auto answer = caller.connection().wait_subscribed(handle, caller.timeout()); !answer) {
         throw Stop{ExitCode::NoConnection, answer.error().what};
     }
-    if (!core::accepted(*answer)) {
-        throw Stop{ExitCode::Refused, core::to_text(answer->status())};
-    }
+    caller.require_subscribed(handle);
     if (const std::string trouble = storage_problem(caller.storage()); !trouble.empty()) {
         std::cerr << visible(trouble) << '\n'; // the problem began before this command
     }
     ConnectionReporter reporter;
     Drawing none;
-    for (std::uint64_t seen = 0; !interrupted() && (!count || seen < *count);) {
+    std::uint64_t seen = 0;
+    for (bool gone = false; !gone && !interrupted() && (!count || seen < *count);) {
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
             std::cout << (common.json ? to_json(*event, false) : visible(text_of(*event)) + "\n") << std::flush;
             ++seen;
+            gone = subscription.has_world() && (event->has_world_deleted() || event->has_world_damaged());
         }
         reporter.report(caller.connection(), none);
+        caller.require_subscribed(handle); // after a reconnection the world may be gone
+    }
+    if (count && seen < *count && !interrupted()) {
+        throw Stop{ExitCode::Refused, "only " + std::to_string(seen) + " of " + std::to_string(*count) +
+                                          " events happened: the world is gone"};
     }
 }
 
@@ -396,7 +400,10 @@ void add_watch_commands(command_line::Command& app, const Common& common) {
 
     auto& events = app.add_command("events", "Print every event of one world or of all, one per line").group(group);
     auto& count = events.keep(std::optional<std::uint64_t>{});
-    events.add_option("--count", &count, "Exit after this many events; default: until Ctrl-C").check(at_least_one);
+    events
+        .add_option("--count", &count,
+                    "Exit after this many events; default: until Ctrl-C, or until the world is deleted")
+        .check(at_least_one);
     events.footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
     events.action([&] { follow_events(common, count); });
 }

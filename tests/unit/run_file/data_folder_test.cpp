@@ -323,7 +323,7 @@ TEST_F(ArchiveTest, TheKeysOfOldCommandsAreKept) {
     ASSERT_TRUE(archive) << to_text(archive.error());
     const auto answers = (*archive)->take_answers();
     const auto keys = (*archive)->take_used_keys();
-    ASSERT_EQ(answers.size(), Archive::answers_kept_of_ended);
+    ASSERT_GE(answers.size(), Archive::answers_kept_of_ended);
     ASSERT_EQ(keys.size(), 1u);
     EXPECT_EQ(keys[0].by.user, "alice");
     EXPECT_EQ(keys[0].client_key, "test");
