@@ -182,6 +182,16 @@ QuantisedView SnapshotTiles::full(std::uint32_t tile) {
     return view;
 }
 
+std::size_t SnapshotTiles::held_bytes() const {
+    std::size_t bytes = gathered_.size() / 8;
+    for (const Part& part : parts_) {
+        const auto columns = static_cast<std::size_t>(
+            std::ranges::count_if(part.columns, [](const auto& column) { return column != nullptr; }));
+        bytes += (part.order.size() * (1 + columns) + part.begin.size()) * sizeof(std::uint32_t);
+    }
+    return bytes;
+}
+
 SnapshotTiles::Place SnapshotTiles::place(const Entities& entities, std::uint32_t entity, std::uint32_t tile) const {
     const auto within = [&](std::uint32_t position, std::uint32_t index) {
         const std::uint32_t steps = position - (index << side_log2_);

@@ -84,6 +84,8 @@ class SnapshotTiles {
     std::string dots(std::uint32_t tile) const;
     /// Encodes the body of a tile at DETAIL_DENSITY.
     std::string density(std::uint32_t tile) const;
+    /// The memory that this object has allocated, without the snapshot.
+    std::size_t held_bytes() const;
 
   private:
     struct Part {

@@ -16,9 +16,6 @@ namespace {
 
 using base::RefusalCode;
 
-// A generous estimate of the size of an answer to GetBreeding.
-constexpr std::ptrdiff_t breeding_bytes = 2 << 20;
-
 base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
                                        const base::StopCheck& stop) {
     const auto file = run.run.open();
@@ -77,7 +74,8 @@ void BackgroundQueries::begin_export(Session& session, std::uint64_t request_id,
     }
     Export begun{++last_export_id_, user,
                  std::make_unique<runtime::ExportJob>(runtime::ExportJob::Tools{export_jobs_, turns_, outbox_}, user,
-                                                      run, wanted, export_patience_)};
+                                                      run, wanted, export_patience_),
+                 std::make_unique<HeldMemory>(session, runtime::ExportJob::held_bytes)};
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
 }
 
@@ -157,6 +155,7 @@ void BackgroundQueries::cancel(Export& of, const base::Refusal& why) {
     if (of.job) {
         of.job->cancel(why);
         cancelled_.push_back({of.user, std::move(of.job)});
+        of.held.reset();
     }
 }
 
@@ -218,8 +217,11 @@ void BackgroundQueries::ask_breeding(Session& session, const v1::Request& reques
                     std::to_string(breedings_waiting_max) + " GetBreeding of this user wait already: try again later",
                     base::Reason::ServerBusy)));
     }
-    waiting_breedings_.add(user, std::make_shared<const Breeding>(Breeding{session.number(), user, request.request_id(),
-                                                                           request.get_breeding(), std::move(run)}));
+    const auto bytes = static_cast<std::ptrdiff_t>(sizeof(Breeding) + request.SpaceUsedLong());
+    session.requests.expect(bytes);
+    waiting_breedings_.add(user,
+                           std::make_shared<const Breeding>(Breeding{session.number(), user, request.request_id(),
+                                                                     request.get_breeding(), std::move(run), bytes}));
     begin_next_breeding();
 }
 
@@ -244,9 +246,6 @@ void BackgroundQueries::begin(BreedingPtr breeding) {
     }
     breeding_quota_.take(breeding->user);
     const std::uint64_t query = ++last_query_;
-    if (const SessionPtr session = find_session(sessions_, breeding->session)) {
-        session->requests.expect(breeding_bytes);
-    }
     auto job = [&outbox = outbox_, &turns = turns_, query, breeding](const std::stop_token& stop) {
         runtime::JobTurns::Turn turn{turns, breeding->user, stop};
         outbox.reply(compute(query, *breeding, turn.stop_check()));
@@ -291,13 +290,13 @@ void BackgroundQueries::on_done(runtime::BreedingDone done) {
         breeding_quota_.give_back(breeding.user);
     }
     if (const SessionPtr session = find_session(sessions_, breeding.session)) {
-        session->requests.expect(-breeding_bytes);
         if (done.is_shortened) {
             limit_counters_.met(Limit::BreedingRows);
         }
         if (ended.is_taken_back && !done.response.has_breeding()) {
             waiting_breedings_.add_first(breeding.user, ended.breeding);
         } else {
+            session->requests.expect(-breeding.bytes);
             session->answer(std::move(done.response));
         }
     }

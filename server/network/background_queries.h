@@ -71,10 +71,29 @@ class BackgroundQueries {
     std::size_t cancelled_count();
 
   private:
+    /// Memory that is counted for a session as long as this object exists.
+    class HeldMemory {
+      public:
+        HeldMemory(Session& session, std::size_t bytes)
+            : session_{session.weak_from_this()}, bytes_{static_cast<std::ptrdiff_t>(bytes)} {
+            session.requests.expect(bytes_);
+        }
+        HeldMemory(const HeldMemory&) = delete;
+        ~HeldMemory() {
+            if (const SessionPtr session = session_.lock()) {
+                session->requests.expect(-bytes_);
+            }
+        }
+
+      private:
+        std::weak_ptr<Session> session_;
+        std::ptrdiff_t bytes_;
+    };
     struct Export {
         std::uint64_t id;
         std::string user;
         std::unique_ptr<runtime::ExportJob> job; // nullptr: another user has got the place
+        std::unique_ptr<HeldMemory> held;        // of the job
         bool asked = false;                      // the client has requested the next part and has not received it yet
         bool has_place = true;                   // it counts in the pool
     };
@@ -102,6 +121,7 @@ class BackgroundQueries {
         std::uint64_t request_id;
         v1::GetBreeding request;
         runtime::FoundRun run;
+        std::ptrdiff_t bytes; // memory of the request
     };
     using BreedingPtr = std::shared_ptr<const Breeding>;
     struct RunningBreeding {

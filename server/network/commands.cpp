@@ -28,6 +28,24 @@ std::string bytes_of(const v1::Request& request) {
     return bytes;
 }
 
+/// Exists as long as a command of a session is under way.
+class UnderWay {
+  public:
+    UnderWay(Session& session, std::size_t bytes) : session_{session.weak_from_this()}, bytes_{bytes} {
+        session.requests.begin_command(bytes_);
+    }
+    UnderWay(const UnderWay&) = delete;
+    ~UnderWay() {
+        if (const auto session = session_.lock()) {
+            session->requests.end_command(bytes_);
+        }
+    }
+
+  private:
+    const std::weak_ptr<Session> session_;
+    const std::size_t bytes_;
+};
+
 /// Increments the counter of each limit that an invalid command exceeds.
 void count_exceeded_limits(const v1::Request& request, LimitCounters& counters) {
     if (request.client_key().size() > protocol::client_key_bytes_max) {
@@ -110,17 +128,16 @@ void Commands::handle(Session& session, const v1::Request& request) {
 
     const UserKey key{session.visitor().name, request.client_key()};
     std::string bytes = bytes_of(request);
-    ++session.requests.commands_under_way;
+    // The command, its bytes in the mail, and those in the reply cache.
+    const std::size_t held = request.SpaceUsedLong() + 2 * bytes.size();
     const auto verdict =
-        reply_cache_.begin(key, session.account(), id, bytes, [weak = session.weak_from_this()](const auto& frame) {
-            if (const auto waiting = weak.lock()) {
-                --waiting->requests.commands_under_way;
-                waiting->answer(frame);
-            }
-        });
-    if (verdict == ReplyCache::Verdict::Different || verdict == ReplyCache::Verdict::TooOld) {
-        --session.requests.commands_under_way; // the cache has dropped the waiter
-    }
+        reply_cache_.begin(key, session.account(), id, bytes,
+                           [weak = session.weak_from_this(),
+                            under_way = std::make_shared<const UnderWay>(session, held)](const auto& frame) {
+                               if (const auto waiting = weak.lock()) {
+                                   waiting->answer(frame);
+                               }
+                           });
     switch (verdict) {
     case ReplyCache::Verdict::Known:
         return;

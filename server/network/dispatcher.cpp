@@ -82,6 +82,16 @@ void count_shortened_answers(const protocol::QueryResult& result, LimitCounters&
     }
 }
 
+/// Memory of a request that waits for its answer.
+std::ptrdiff_t held_bytes(const v1::Request& request) {
+    return static_cast<std::ptrdiff_t>(request.SpaceUsedLong());
+}
+
+/// Memory of the rows that a query has copied.
+std::ptrdiff_t held_bytes(const protocol::QueryResult& result) {
+    return static_cast<std::ptrdiff_t>(protocol::row_bytes(result));
+}
+
 base::Refusal shutting_down_refusal() {
     return refusal(base::RefusalCode::Unavailable,
                    "the server is shutting down: send the request again after the restart",
@@ -190,6 +200,7 @@ void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
         [this](runtime::ExportPartDone& done) { background_queries_.on_done(std::move(done)); },
         [this](runtime::BreedingDone& done) { background_queries_.on_done(std::move(done)); },
         [this](runtime::Pong& /*pong*/) { heartbeat_.answered(); }, [this](auto& done) { on_done(std::move(done)); }};
+    expect_results(deliveries);
     for (runtime::Delivery& delivery : deliveries) {
         std::visit(base::Overloaded{[&](runtime::Reply& reply) {
                                         if (auto answer = simulations_.pass_on(std::move(reply))) {
@@ -200,6 +211,17 @@ void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
                                     [this](const runtime::StorageChanged& changed) { on_storage(changed); },
                                     [this](const simulation::DamagedWorld& damaged) { on_damaged(damaged); }},
                    delivery);
+    }
+}
+
+void Dispatcher::expect_results(const std::vector<runtime::Delivery>& deliveries) {
+    for (const runtime::Delivery& delivery : deliveries) {
+        const auto* reply = std::get_if<runtime::Reply>(&delivery);
+        if (const auto* done = reply != nullptr ? std::get_if<runtime::QueryDone>(reply) : nullptr) {
+            if (const SessionPtr session = find_session(sessions_, done->mail.session)) {
+                session->requests.expect(held_bytes(done->result));
+            }
+        }
     }
 }
 
@@ -231,7 +253,7 @@ void Dispatcher::ask(Session& session, v1::Request request) {
     if (ask(session, asked->request_id(), protocol::world_of(*asked),
             runtime::QueryMail{session.number(), asked, users_only, session.account()})) {
         session.requests.query_under_way = true;
-        session.requests.expect(static_cast<std::ptrdiff_t>(protocol::row_bytes_max(*asked)));
+        session.requests.expect(held_bytes(*asked));
     }
 }
 
@@ -242,7 +264,7 @@ void Dispatcher::on_done(runtime::QueryDone done) {
     }
     const v1::Request& request = *done.mail.request;
     session->requests.query_under_way = false;
-    session->requests.expect(-static_cast<std::ptrdiff_t>(protocol::row_bytes_max(request)));
+    session->requests.expect(-held_bytes(request) - held_bytes(done.result));
     count_shortened_answers(done.result, host_.limit_counters);
     protocol::add_rows(done.result, done.response);
     if (const auto* world = std::get_if<protocol::FoundWorld>(&done.result)) {
@@ -351,10 +373,18 @@ void Dispatcher::on_done(runtime::ReplayDone done) {
     session->answer(std::move(response));
 }
 
+void Dispatcher::on_done(const runtime::ReplayMemory& memory) {
+    if (const SessionPtr session = find_session(sessions_, memory.session)) {
+        session->hold_replays(memory.bytes);
+    }
+}
+
 void Dispatcher::find_run(Session& session, v1::Request request) {
     const auto asked = std::make_shared<const v1::Request>(std::move(request));
     const std::string world = protocol::lookup_name(protocol::world_of(*asked));
-    ask(session, asked->request_id(), world, runtime::FindRun{world, session.number(), asked});
+    if (ask(session, asked->request_id(), world, runtime::FindRun{world, session.number(), asked})) {
+        session.requests.expect(held_bytes(*asked));
+    }
 }
 
 void Dispatcher::on_done(runtime::RunFound done) {
@@ -364,6 +394,7 @@ void Dispatcher::on_done(runtime::RunFound done) {
     }
     const v1::Request& request = *std::get<std::shared_ptr<const v1::Request>>(done.mail.purpose);
     const std::uint64_t id = request.request_id();
+    session->requests.expect(-held_bytes(request));
     if (!done.run) {
         session->answer(protocol::refusing(id, protocol::with_paths(done.run.error(), protocol::name_of(request))));
     } else if (request.has_export_run()) {

@@ -57,10 +57,13 @@ class Dispatcher {
     /// Handles a request that the session has admitted.
     void serve(Session& session, v1::Request request);
     void query(Session& session, v1::Request request);
+    /// Counts the memory of results that have arrived, until their answers are complete.
+    void expect_results(const std::vector<runtime::Delivery>& deliveries);
     // The following functions complete the answer to a request and send it, if the session still exists.
     void on_done(runtime::QueryDone done);
     void on_done(runtime::ReplayDone done);
     void on_done(runtime::RunFound done);
+    void on_done(const runtime::ReplayMemory& memory);
     void on_storage(const runtime::StorageChanged& changed);
     /// Ends the lease and the snapshot streams of a world that has become damaged, and publishes the event.
     void on_damaged(const simulation::DamagedWorld& damaged);

@@ -52,8 +52,8 @@ constexpr LimitRow table[] = {
      "with the most",
      shared},
     {Limit::RequestsPerSecond, "requests_per_s_max", requests_per_s_max,
-     "average number of frames per second from a session, including invalid ones; each further 64 bytes of a frame and "
-     "each 1,024 bytes of its answer count as one more frame",
+     "average number of frames per second from a session, including invalid ones; each further 64 bytes of a frame, "
+     "each 1,024 bytes of its answer, and each island whose snapshot it asks for count as one more frame",
      "rate limit: the server pauses reading from the session; it refuses nothing"},
     {Limit::RequestBurst, "request_burst_max", request_burst_max,
      "frames that a session may send at once, counted in the same way", "as for `requests_per_s_max`"},
@@ -122,8 +122,11 @@ constexpr LimitRow table[] = {
     {Limit::PopulationRows, "population_rows_max", protocol::population_rows_max, "organisms in a `Population`",
      "the server shortens the answer; request the next organisms"},
     {Limit::ClientBufferBytes, "client_buffer_bytes_max", client_buffer_bytes_max,
-     "bytes of memory for all sessions: data to send, answers in preparation, waiting requests, incomplete frames",
-     "the server closes the sessions that use the most memory"},
+     "bytes of memory for all sessions: data to send, requests and exports, subscriptions and snapshots, "
+     "replays, incomplete frames",
+     "the server closes the largest sessions of the user that uses the most memory; it "
+     "does so, too, if a user uses more than half",
+     true},
     {Limit::QueuedResponseBytes, "queued_response_bytes_max", queued_response_bytes_max,
      "bytes of answers that a session has not read", "the server closes the session"},
     {Limit::QueuedEventBytes, "queued_event_bytes_max", queued_event_bytes_max,

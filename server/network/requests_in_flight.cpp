@@ -20,8 +20,19 @@ void RequestsInFlight::expect(std::ptrdiff_t bytes) {
     }
 }
 
+void RequestsInFlight::begin_command(std::size_t bytes) {
+    ++commands_under_way;
+    expect(static_cast<std::ptrdiff_t>(bytes));
+}
+
+void RequestsInFlight::end_command(std::size_t bytes) {
+    --commands_under_way;
+    expect(-static_cast<std::ptrdiff_t>(bytes));
+}
+
 void RequestsInFlight::hold_back(v1::Request request) {
-    const std::size_t bytes = request.SpaceUsedLong();
+    constexpr std::size_t of_allocations = 64;
+    const std::size_t bytes = request.SpaceUsedLong() + of_allocations;
     held_back_bytes_.set(held_back_bytes_.bytes() + bytes);
     held_back_.push_back({std::move(request), bytes});
 }

@@ -1,4 +1,4 @@
-// Requests in flight: the unanswered requests of a session, the memory reserved for their answers, and the requests that wait
+// Requests in flight: the unanswered requests of a session, their memory, and the requests that wait
 // until a query of the session is answered.
 //
 // The simulation thread processes at most one query per session at a time, so that all sessions get an equal share of its
@@ -28,8 +28,14 @@ class RequestsInFlight {
     void count_answered(std::size_t count) { unanswered_ -= count; }
     std::size_t unanswered() const { return unanswered_; }
 
-    /// Reserves memory for answers in preparation. A negative number releases it when the answer is ready.
+    /// Reserves memory of requests under way and of answers in preparation. A negative number releases it.
     void expect(std::ptrdiff_t bytes);
+
+    /// To be called when the simulation is to carry out a command, and when its answer exists.
+    ///
+    /// bytes  memory of the command
+    void begin_command(std::size_t bytes);
+    void end_command(std::size_t bytes);
 
     bool query_under_way = false;
     std::size_t commands_under_way = 0; // commands whose answer does not exist yet

@@ -44,7 +44,7 @@ void SendQueue::begin_rest(const Header& header, std::span<const SharedBytes* co
     header_and_tail_ += tail;
     buffers_.push_back(asio::buffer(header_and_tail_.data(), header.size()));
     for (const SharedBytes* part : parts) {
-        sending_.push_back({{memory_, *part}, nullptr, false});
+        parts_.push_back(*part);
         buffers_.push_back(asio::buffer(**part));
     }
     buffers_.push_back(asio::buffer(header_and_tail_) + header.size());
@@ -62,6 +62,7 @@ void SendQueue::end_sending() {
         }
     }
     sending_.clear(); // the bytes are no longer counted
+    parts_.clear();
     buffers_.clear();
 }
 
@@ -72,6 +73,9 @@ std::size_t SendQueue::held_bytes() const {
     }
     for (const Queued& queued : sending_) {
         bytes += queued.bytes.share();
+    }
+    for (const SharedBytes& part : parts_) {
+        bytes += part->size() / static_cast<std::size_t>(part.use_count());
     }
     return bytes;
 }

@@ -48,16 +48,16 @@ class SendQueue {
     std::uint64_t take_dropped_events() { return std::exchange(dropped_events_, 0); }
 
     bool has_waiting_frames() const { return !waiting_.empty(); }
-    bool is_sending() const { return !sending_.empty(); }
+    bool is_sending() const { return !buffers_.empty(); }
     /// Whether everything has been sent and reported.
-    bool is_idle() const { return waiting_.empty() && sending_.empty() && dropped_events_ == 0; }
+    bool is_idle() const { return waiting_.empty() && !is_sending() && dropped_events_ == 0; }
 
     /// Begins to send the first frames that wait. Returns the number of answers among them.
     std::size_t begin_batch();
     /// Begins to send the rest of a snapshot that the connection did not accept at once.
     void begin_rest(const SharedBytes& rest);
     /// The same for a snapshot that consists of these parts, of which the connection accepted the first bytes. The parts
-    /// are not copied, because all sessions that receive them share them.
+    /// are not copied, because all sessions that receive them share them. SnapshotMemory counts them.
     void begin_rest(const Header& header, std::span<const SharedBytes* const> parts, std::string_view tail,
                     std::size_t accepted_bytes);
     /// What is being sent.
@@ -72,15 +72,17 @@ class SendQueue {
   private:
     struct Queued {
         SendMemory::Counted bytes;
-        std::size_t* counter; // response_bytes_ or event_bytes_; nullptr: a part of a snapshot
+        std::size_t* counter; // response_bytes_ or event_bytes_; nullptr: the rest of a snapshot
         bool is_answer;
     };
 
     SendMemory& memory_;
     std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max();
     std::deque<Queued> waiting_;
-    std::vector<Queued> sending_;                    // not empty: a write is in progress or about to start
-    std::vector<boost::asio::const_buffer> buffers_; // point to header_and_tail_ and the bytes in sending_
+    std::vector<Queued> sending_;
+    std::vector<SharedBytes> parts_; // of a snapshot that is being sent
+    // Point to header_and_tail_ and the bytes in sending_ and parts_. Not empty: a write is in progress or about to start.
+    std::vector<boost::asio::const_buffer> buffers_;
     std::string header_and_tail_;
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in waiting_ and sending_
     std::uint64_t dropped_events_ = 0;                 // number of dropped events that were not reported yet

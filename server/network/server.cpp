@@ -87,7 +87,7 @@ Server::Server(ServerOptions options)
     , simulations_{std::holds_alternative<ReplayedRun>(options_.worlds)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , table_{host_, options_.limits.sessions_max}
-    , streams_{table_.sessions(), simulations_}
+    , streams_{table_.sessions(), simulations_, send_memory_}
     , dispatcher_{context_,
                   simulations_,
                   outbox_,
@@ -105,6 +105,7 @@ Server::Server(ServerOptions options)
     host_.admit = [this](const std::string& token, const std::string& address) {
         return gate_->admit(token, address, access::Gate::Clock::now());
     };
+    host_.shared_snapshot_bytes = [this] { return streams_.shared_bytes(); };
     host_.ended = [this](Session& session) {
         dispatcher_.forget(session);
         table_.forget(session);

@@ -190,10 +190,12 @@ v1::Metrics Server::metrics() {
     add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
         .add(number(gate_->failed_login_count()));
     add_gauge(all, "evod_client_buffer_bytes",
-              "Memory of all sessions: data to send, answers in preparation, waiting requests, incomplete frames")
+              "Memory of all sessions: data to send, requests and exports, subscriptions and snapshots, replays, "
+              "incomplete frames")
         .add(number(send_memory_.bytes()));
-    add_gauge(all, "evod_client_buffer_bytes_max",
-              "Limit of that memory; above it, the sessions with the most memory are closed")
+    add_gauge(
+        all, "evod_client_buffer_bytes_max",
+        "Limit of that memory; above it, and if a user uses more than half of it, the largest sessions are closed")
         .add(number(client_buffer_bytes_max));
     add_traffic(all, host_.traffic);
     add_limits(all, limit_counters_);

@@ -40,6 +40,8 @@ Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::u
     , account_{address_prefix_}
     , deadline_timer_{transport_->socket().get_executor()}
     , reader_bytes_{host.send_memory}
+    , subscription_bytes_{host.send_memory}
+    , replay_bytes_{host.send_memory}
     , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
     , empty_frames_{empty_frames_per_s_max, empty_frames_burst_max, host.clock->now()}
     , turn_{transport_->socket().get_executor()}
@@ -475,14 +477,14 @@ void Session::check_silence(runtime::Clock::duration watched) {
 }
 
 std::size_t Session::held_bytes() const {
-    return reader_bytes_.bytes() + requests.held_bytes() + queue_.held_bytes();
+    return reader_bytes_.bytes() + requests.held_bytes() + queue_.held_bytes() + subscription_bytes_.bytes() +
+           replay_bytes_.bytes();
 }
 
-void Session::evict() {
+void Session::evict(std::string_view why, std::size_t bytes) {
     host_.limit_counters.met(Limit::ClientBufferBytes);
     log_line(log::Level::Warn, {},
-             "closed: all sessions use more than " + std::to_string(client_buffer_bytes_max >> 20) +
-                 " MiB of memory, and this one uses " + std::to_string(held_bytes() >> 10) + " KiB");
+             "closed: " + std::string{why} + " of memory, and this one uses " + std::to_string(bytes >> 10) + " KiB");
     close();
 }
 
@@ -512,7 +514,9 @@ void Session::close() {
     end(deadline_);
     queue_.drop_waiting();
     snapshots.clear();
+    count_subscriptions();
     reader_bytes_.set(0);
+    replay_bytes_.set(0); // the thread of the replays releases them soon
     requests.close();
     turn_.notify();
     writer_.notify();

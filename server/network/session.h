@@ -41,6 +41,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace evod::log {
 enum class Level;
@@ -78,6 +79,8 @@ struct SessionHost {
     };
     std::function<void(Session&, v1::Request)> handle = {};
     std::function<void(Session&)> ended = {}; // called once, when the session has ended
+    /// Returns, by session, its part of the memory of the snapshots that sessions share.
+    std::function<std::map<std::uint64_t, std::size_t>()> shared_snapshot_bytes = {};
 };
 
 struct EventSubscription {
@@ -131,10 +134,19 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     ///
     /// watched  the part of the time since the last call in which the server was able to observe the client.
     void check_progress(runtime::Clock::duration watched);
-    /// Number of bytes that would be released if this session were closed.
+    /// Number of bytes that would be released if this session were closed, without the snapshots that it shares.
     std::size_t held_bytes() const;
-    /// Closes the session because all sessions together use too much memory.
-    void evict();
+    /// Closes the session because its user's sessions, or all sessions together, use too much memory.
+    ///
+    /// why    what exceeds its limit: "all sessions use more than 256 MiB"
+    /// bytes  its part of this memory
+    void evict(std::string_view why, std::size_t bytes);
+    /// Makes the rate limit count so many frames more, because a request causes as much work.
+    void charge(std::size_t frames) { turns_to_send_.charge(static_cast<double>(frames)); }
+    /// Sets the memory of the session's replays and seeks.
+    void hold_replays(std::size_t bytes) { replay_bytes_.set(phase_ == Phase::Ended ? 0 : bytes); }
+    /// Must be called after the subscriptions to snapshots have changed.
+    void count_subscriptions() { subscription_bytes_.set(snapshots.held_bytes()); }
 
     std::uint32_t next_subscription_id() { return ++subscription_id_; }
     streaming::SnapshotQueue snapshots; // the subscriptions to snapshots, and the snapshots that wait to be sent
@@ -206,7 +218,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     std::optional<WebSocketClose> close_code_; // why the session ends; nullopt: for no particular reason
 
     codec::FrameReader reader_{codec::hello_limits};
-    SendMemory::Reservation reader_bytes_;
+    SendMemory::Reservation reader_bytes_, subscription_bytes_, replay_bytes_;
     TokenBucket turns_to_send_, empty_frames_;
     Signal turn_; // ends a wait of the coroutine that reads
     ClientWatch watch_;

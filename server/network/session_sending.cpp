@@ -70,6 +70,7 @@ bool Session::may_send_snapshots() const {
 
 void Session::send_snapshots() {
     if (!writer_.is_awaited() || !may_send_snapshots()) {
+        count_subscriptions();
         return writer_.notify();
     }
     // The snapshots are sent without waking the writer: with many viewers, waking the writers would double the cost.
@@ -82,6 +83,7 @@ void Session::send_snapshots() {
         send_frame(*frame);
     }
     snapshots.release();
+    count_subscriptions();
     if (sent == snapshots_at_once || snapshots.retry_at() != runtime::Clock::time_point::max() ||
         !may_send_snapshots()) {
         writer_.notify();
@@ -193,6 +195,7 @@ asio::awaitable<void> Session::write() {
             }
         } else {
             snapshots.release();
+            count_subscriptions();
             co_await writer_.wait(snapshots.retry_at());
         }
     }

@@ -1,13 +1,14 @@
 #include "server/network/session_table.h"
 
+#include "server/base/quota.h"
+
 #include <algorithm>
-#include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace evod::network {
-
 namespace {
 
 base::Refusal to_make_room(const char* why) {
@@ -100,18 +101,45 @@ void SessionTable::forget(const Session& session) {
 }
 
 void SessionTable::evict() {
-    std::vector<std::pair<std::size_t, SessionPtr>> most;
-    for (const auto& [number, session] : sessions_) {
-        most.emplace_back(session->held_bytes(), session);
+    struct Held {
+        SessionPtr session;
+        std::size_t bytes;
+        bool has_command;
+    };
+    base::Quota users{host_.send_memory.bytes_max()};
+    std::map<std::string, std::vector<Held>> sessions_of; // key: the account; the session to close first is the last
+    std::map<std::uint64_t, std::size_t> shared;
+    if (host_.shared_snapshot_bytes) {
+        shared = host_.shared_snapshot_bytes();
     }
-    std::ranges::sort(most, std::greater{}, [](const auto& item) { return item.first; });
-    std::size_t excess = host_.send_memory.excess();
-    for (const auto& [bytes, session] : most) {
-        if (excess == 0 || bytes == 0) {
-            break;
+    for (const auto& [number, session] : sessions_) {
+        if (const std::size_t bytes = session->held_bytes() + shared[number]; bytes > 0) {
+            users.take(session->account(), bytes);
+            sessions_of[session->account()].push_back({session, bytes, session->requests.commands_under_way > 0});
         }
-        session->evict();
-        excess -= std::min(excess, bytes);
+    }
+    for (auto& [account, sessions] : sessions_of) {
+        std::ranges::sort(sessions, {}, [](const Held& held) { return std::pair{!held.has_command, held.bytes}; });
+    }
+    const std::size_t all_mib = host_.send_memory.bytes_max() >> 20;
+    const std::string of_user = "the sessions of one user use more than " + std::to_string(all_mib / 2) + " MiB",
+                      of_all = "all sessions use more than " + std::to_string(all_mib) + " MiB";
+    std::size_t excess = host_.send_memory.excess();
+    const auto is_over = [&] {
+        const std::string& account = users.largest();
+        if (account.empty() || excess > 0) {
+            return account.empty();
+        }
+        const std::size_t most = std::ranges::max(sessions_of.at(account), {}, &Held::bytes).bytes;
+        return users.held(account) <= users.share() || users.held(account) - most <= users.share() / 16;
+    };
+    while (!is_over()) {
+        const std::string account = users.largest();
+        const Held held = sessions_of.at(account).back();
+        sessions_of.at(account).pop_back();
+        held.session->evict(users.held(account) > users.share() ? of_user : of_all, held.bytes);
+        users.give_back(account, held.bytes);
+        excess -= std::min(excess, held.bytes);
     }
 }
 

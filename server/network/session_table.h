@@ -36,7 +36,10 @@ class SessionTable {
     std::uint64_t ended_count() const { return ended_count_; }
     /// Refuses all further connections, because the server is shutting down.
     void refuse_all() { going_away_ = true; }
-    /// Closes the sessions that use the most memory until all sessions together are within the limit of SendMemory.
+    /// Closes sessions until all together are within the limit of SendMemory, and no user holds more than half of it. A
+    /// session belongs to the user who holds the most then, and is the one that uses the most memory, but sessions with
+    /// a command under way come last. If one session holds nearly all that its user holds, it may be more than
+    /// half, because the session may show a large world.
     void evict();
 
     /// The places that sessions hold, by account.

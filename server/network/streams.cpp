@@ -11,7 +11,9 @@ namespace evod::network {
 
 std::uint32_t Streams::subscribe(Session& session, streaming::SnapshotSubscription subscription) {
     const std::uint32_t id = session.next_subscription_id();
+    session.charge(subscription.island_count);
     snapshots_.subscribe(session.number(), session.snapshots, id, std::move(subscription));
+    session.count_subscriptions();
     update_demand();
     return id;
 }
@@ -26,16 +28,23 @@ std::uint32_t Streams::subscribe(Session& session, EventSubscription subscriptio
 bool Streams::unsubscribe(Session& session, std::uint32_t subscription_id) {
     const bool found = snapshots_.unsubscribe(session.number(), session.snapshots, subscription_id) ||
                        session.events.erase(subscription_id) > 0;
-    update_demand();
+    if (found) {
+        session.count_subscriptions();
+        update_demand();
+    }
     return found;
 }
 
 bool Streams::send_keyframes(Session& session, std::uint32_t subscription_id) {
-    return snapshots_.send_keyframes(session.snapshots, subscription_id);
+    const auto sent = snapshots_.send_keyframes(session.snapshots, subscription_id);
+    session.charge(sent.value_or(0));
+    session.count_subscriptions();
+    return sent.has_value();
 }
 
 void Streams::set_view(Session& session, std::uint32_t subscription_id, const v1::View& view) {
-    snapshots_.set_view(session.snapshots, subscription_id, view);
+    session.charge(snapshots_.set_view(session.snapshots, subscription_id, view));
+    session.count_subscriptions();
 }
 
 void Streams::forget(const Session& session) {

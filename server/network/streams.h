@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,19 +20,23 @@ namespace evod::network {
 class Streams {
   public:
     /// All arguments must outlive this object.
-    Streams(const Sessions& sessions, runtime::Simulations& simulations)
-        : sessions_{sessions}, simulations_{simulations} {}
+    Streams(const Sessions& sessions, runtime::Simulations& simulations, SendMemory& memory)
+        : sessions_{sessions}, simulations_{simulations}, snapshots_{&memory} {}
 
-    /// Returns the id of the new subscription.
+    /// Returns the id of the new subscription. For the rate limit of the session, each island counts as a frame.
     std::uint32_t subscribe(Session& session, streaming::SnapshotSubscription subscription);
     std::uint32_t subscribe(Session& session, EventSubscription subscription);
     /// Ends a subscription. Returns false if the session has no such subscription.
     bool unsubscribe(Session& session, std::uint32_t subscription_id);
     /// Sends the newest snapshots of a subscription as keyframes. Returns false if the session has no such
-    /// subscription.
+    /// subscription. For the rate limit of the session, each snapshot counts as a frame.
     bool send_keyframes(Session& session, std::uint32_t subscription_id);
-    /// Changes the view of a subscription that has one. The newest snapshots are sent again with the new view.
+    /// Changes the view of a subscription that has one. The newest snapshots are sent again with the new view, and count
+    /// in the same way.
     void set_view(Session& session, std::uint32_t subscription_id, const v1::View& view);
+
+    /// Returns, by session, its part of the memory of the snapshots that sessions share.
+    std::map<std::uint64_t, std::size_t> shared_bytes() const { return snapshots_.shared_bytes(); }
 
     /// Must be called after a session was removed from the table.
     void forget(const Session& session);

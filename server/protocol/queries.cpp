@@ -377,18 +377,21 @@ void add_rows(const QueryResult& result, v1::Response& response) {
     }
 }
 
-std::size_t row_bytes_max(const v1::Request& request) {
-    switch (request.kind_case()) {
-    case v1::Request::kGetHistory:
-        return history_statistics_max * (sizeof(simulation::GenerationStatistics) +
-                                         evolution::body_gene_count *
-                                             (sizeof(simulation::GeneStatistics) + sizeof(evolution::GeneAccount))) +
-               simulation::Changes::values_kept * sizeof(simulation::ChangedValue);
-    case v1::Request::kGetPopulation:
-        return population_rows_max * population_row_bytes;
-    default:
-        return 0;
+std::size_t row_bytes(const QueryResult& result) {
+    if (const auto* part = std::get_if<HistoryPart>(&result)) {
+        std::size_t bytes = part->generations.size() * sizeof(simulation::GenerationRows);
+        for (const simulation::Change& change : part->changes) {
+            bytes += sizeof change + change.values.size() * sizeof(simulation::ChangedValue);
+        }
+        return bytes;
     }
+    if (const auto* rows = std::get_if<PopulationRows>(&result)) {
+        return static_cast<std::size_t>(rows->genes.size()) * sizeof(float) +
+               rows->parents.size() * sizeof(evolution::Parents) + rows->founders.size() * sizeof(std::uint32_t) +
+               rows->intentions.size() * sizeof(simulation::Intention) +
+               rows->lives.size() * sizeof(simulation::Island::Life);
+    }
+    return 0;
 }
 
 } // namespace evod::protocol

@@ -54,9 +54,6 @@ struct PopulationRows {
     std::vector<simulation::Island::Life> lives;
     double tick_s; // unit of Life::lived_ticks
 };
-constexpr std::size_t population_row_bytes = sizeof(evolution::BodyGenes) + sizeof(evolution::Parents) +
-                                             sizeof(std::uint32_t) + sizeof(simulation::Intention) +
-                                             sizeof(simulation::Island::Life);
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);
 v1::Population to_proto(const PopulationRows& rows);
 
@@ -80,7 +77,7 @@ QueryResult answer_query(const v1::Request& request, const simulation::Laborator
                          v1::Response& response);
 /// If the result contains rows, converts them and adds them to the response.
 void add_rows(const QueryResult& result, v1::Response& response);
-/// Maximum size in bytes of the rows that answer_query() copies for this request.
-std::size_t row_bytes_max(const v1::Request& request);
+/// Memory of the rows that a result has copied. The rows of a history are shared with the world.
+std::size_t row_bytes(const QueryResult& result);
 
 } // namespace evod::protocol

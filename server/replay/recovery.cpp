@@ -29,7 +29,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     if (!journal) {
         return journal.error();
     }
-    const auto changes = world_changes(file.path(), *journal);
+    auto changes = world_changes(file.path(), *journal);
     if (!changes) {
         return changes.error();
     }
@@ -39,6 +39,7 @@ Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
     if (!rerun) {
         return rerun.error();
     }
+    *changes = {}; // the rerun drops each change when it has applied it
     const std::uint64_t from = rerun->world().moment().tick;
     const auto hashes = file.hashes(from, last_tick);
     if (!hashes) {

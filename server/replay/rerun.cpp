@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <type_traits>
 #include <utility>
 
@@ -24,6 +25,20 @@ Refusal damaged(const std::string& path, const std::string& what) {
 }
 Refusal damaged(const run_file::RunFile& file, const std::string& what) {
     return damaged(file.path(), what);
+}
+
+std::size_t bytes_of(const simulation::PlaceEntities& command) {
+    std::size_t bytes = command.items.size() * sizeof(simulation::PlaceEntities::Item);
+    for (const simulation::PlaceEntities::Organism& organism : command.organisms) {
+        bytes += sizeof organism + organism.genes.size() * sizeof(float);
+    }
+    return bytes;
+}
+std::size_t bytes_of(const simulation::RemoveEntities& command) {
+    return (command.food.size() + command.poison.size() + command.organisms.size()) * sizeof(std::uint32_t);
+}
+std::size_t bytes_of(const simulation::SetFitness& command) {
+    return command.fitness.size() * sizeof(double);
 }
 
 Refusal impossible_change(const std::string& path, const WorldChange& change) {
@@ -126,14 +141,26 @@ Result<void> add_changes(const std::string& path, std::span<const run_file::Jour
             changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .cancels = cancel->id});
         }
         if (auto checked = checked_command(*std::move(command))) {
-            changes.push_back(
-                {.entry = entry.number, .tick = entry.tick, .assignments = {}, .checked = std::move(checked)});
+            changes.push_back({.entry = entry.number,
+                               .tick = entry.tick,
+                               .assignments = {},
+                               .checked = std::make_shared<const CheckedCommand>(*std::move(checked))});
         }
     }
     return {};
 }
 
 } // namespace
+
+std::size_t bytes_of(const WorldChange& change) {
+    std::size_t bytes = sizeof change + change.by.user.size() + change.by.program.size() + change.by.address.size() +
+                        change.assignments.capacity() * sizeof(parameters::Assignment);
+    if (change.checked) {
+        bytes +=
+            sizeof *change.checked + std::visit([](const auto& command) { return bytes_of(command); }, *change.checked);
+    }
+    return bytes;
+}
 
 base::Refusal cancelled_refusal() {
     return refusal(RefusalCode::Unavailable, "reading was cancelled");
@@ -373,6 +400,7 @@ Result<void> ComingChanges::extend(const std::string& path, std::span<const Worl
         }
         last_entry_ = change.entry;
         changes_.push_back(change);
+        bytes_ += bytes_of(change);
     }
     path_ = path;
     return {};
@@ -412,10 +440,12 @@ void ComingChanges::apply_due(simulation::World& world, std::uint64_t last) {
     const auto is_due = [&](const WorldChange& change) {
         return change.tick <= world.moment().tick && change.entry <= last;
     };
-    for (; !fault_ && !changes_.empty() && is_due(changes_.front()); changes_.pop_front()) {
+    while (!fault_ && !changes_.empty() && is_due(changes_.front())) {
         if (!apply(changes_.front(), world)) {
             fault_ = impossible_change(path_, changes_.front());
         }
+        bytes_ -= bytes_of(changes_.front());
+        changes_.pop_front();
     }
 }
 

@@ -9,7 +9,9 @@
 #include "server/base/stop_check.h"
 #include "server/run_file/run_file.h"
 
+#include <cstddef>
 #include <deque>
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -31,8 +33,12 @@ struct WorldChange {
     std::optional<parameters::PlannedMoment> at = std::nullopt; // when the change takes effect; nullopt: at once
     base::Actor by = {};                                        // the client that sent the command
     std::optional<std::uint64_t> cancels = std::nullopt;        // id of the planned change that this command cancels
-    std::optional<CheckedCommand> checked = std::nullopt;
+    // nullptr: it is another command. Copies of the change share it, because it may contain the fitness of an island.
+    std::shared_ptr<const CheckedCommand> checked = nullptr;
 };
+
+/// Memory of a change, with what it shares with its copies.
+std::size_t bytes_of(const WorldChange& change);
 
 /// Reads the changes in a file's journal, in order of ticks. Refused if an entry contains no command, or if
 /// its tick is before that of the previous entry.
@@ -70,6 +76,8 @@ class ComingChanges {
     std::uint64_t last_entry() const { return last_entry_; }
     /// The number of changes that were not applied yet. The others are not kept.
     std::size_t waiting_count() const { return changes_.size(); }
+    /// Memory of the changes that were not applied yet.
+    std::size_t held_bytes() const { return bytes_; }
     /// Set if a change cannot have been accepted at its moment, or is missing; the file is then damaged.
     const std::optional<base::Refusal>& fault() const { return fault_; }
     /// Sets fault(): the journal lacks the fitness without which this generation cannot end.
@@ -82,6 +90,7 @@ class ComingChanges {
     std::uint64_t last_entry_;        // number of the last journal entry that was added
     std::string path_;                // path of the file
     std::deque<WorldChange> changes_; // those that were not applied yet
+    std::size_t bytes_ = 0;           // their memory
     std::optional<base::Refusal> fault_;
 };
 
@@ -133,6 +142,8 @@ class Rerun {
 
     const simulation::World& world() const { return world_; }
     const ComingChanges& changes() const { return changes_; }
+    /// Moves the changes out. The rerun must not advance afterwards.
+    ComingChanges take_changes() && { return std::move(changes_); }
     /// Ends the rerun and returns its world in the present state.
     simulation::World take() && { return std::move(world_); }
 

@@ -24,7 +24,8 @@ namespace evod::runtime {
 
 class ExportJob {
   public:
-    static constexpr std::size_t part_bytes = 256 << 10; // minimum size of each part except the last
+    static constexpr std::size_t part_bytes = 256 << 10;      // minimum size of each part except the last
+    static constexpr std::size_t held_bytes = 2 * part_bytes; // memory of a running export: a part that waits
     static constexpr std::chrono::milliseconds patience = std::chrono::seconds{30};
 
     struct Tools {

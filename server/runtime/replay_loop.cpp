@@ -47,8 +47,14 @@ ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, JobTurns& tu
 void ReplayLoop::handle(Mail& mail) {
     std::visit(
         base::Overloaded{[this](BringWorld& request) { begin_seek(request.fork, request.run.run, request.run.until); },
-                         [this](SeekRead& read) { seeks_.take(read); },
-                         [this](RecordsRead& read) { shown_.take(read); }, [this](FindRun& run) { find_run(run); },
+                         [this](SeekRead& read) { report_memory(seeks_.take(read)); },
+                         [this](RecordsRead& read) {
+                             shown_.take(read);
+                             if (const ShownReplays::Owner* owner = shown_.owner_of(read.replay)) {
+                                 report_memory(owner->session);
+                             }
+                         },
+                         [this](FindRun& run) { find_run(run); },
                          [&](ReplayMail& request) {
                              if (!answer(request)) {
                                  SimulationLoop::handle(mail);
@@ -85,6 +91,11 @@ void ReplayLoop::list_seeks(std::vector<Pace::Contender>& contenders) {
 void ReplayLoop::after_tick(simulation::Entry& entry) {
     shown_.follow(entry);
     laboratory_.settle(entry);
+    if (entry.world.generation_over()) {
+        if (const ShownReplays::Owner* owner = shown_.owner_of(entry.name)) {
+            report_memory(owner->session); // the history has grown
+        }
+    }
 }
 
 std::string ReplayLoop::user_of(const std::string& world) const {
@@ -146,15 +157,18 @@ bool ReplayLoop::close(const ReplayMail& mail, const CloseReplay& request) {
     shown_.close(request.world);
     seeks_.cancel_of_replay(request.world);
     outputs_.reply(ReplayDone{mail, request.world});
+    report_memory(mail.session);
     return true;
 }
 
 void ReplayLoop::end(const EndReplay& mail) {
     if (mail.name.empty()) {
         seeks_.cancel_opening(mail.session, mail.request_id, replay_taken_back());
-    } else if (shown_.run_of(mail.name) != nullptr) {
+    } else if (const ShownReplays::Owner* owner = shown_.owner_of(mail.name)) {
+        const std::uint64_t session = owner->session;
         shown_.close(mail.name);
         seeks_.cancel_of_replay(mail.name);
+        report_memory(session);
     }
 }
 
@@ -206,6 +220,7 @@ void ReplayLoop::finish(Seeks::Ended ended) {
 
 void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const replay::StoredRun& run,
                         Result<SeekResult> result) {
+    report_memory(mail.session);
     if (!result) {
         const std::string field = moved.empty() ? "at." : "to.";
         return outputs_.reply(ReplayDone{mail, with_prefix(field, result.error())});
@@ -218,6 +233,7 @@ void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const 
     } else {
         shown_.move_to(name, *std::move(result));
     }
+    report_memory(mail.session);
     const simulation::Entry& entry = **laboratory_.find(name);
     outputs_.reply(ReplayDone{mail, name, protocol::to_proto(entry)});
     if (!moved.empty()) {
@@ -227,7 +243,18 @@ void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const 
     }
 }
 
+void ReplayLoop::report_memory(std::uint64_t session) {
+    if (session == 0) {
+        return;
+    }
+    const std::size_t bytes = seeks_.held_bytes(session) + shown_.held_bytes(session);
+    if (std::exchange(reported_bytes_[session], bytes) != bytes) {
+        outputs_.reply(ReplayMemory{.session = session, .bytes = bytes});
+    }
+}
+
 void ReplayLoop::forget(std::uint64_t session) {
+    reported_bytes_.erase(session);
     seeks_.cancel_of_session(session);
     for (const std::string& name : shown_.names(session)) {
         shown_.close(name);

@@ -12,6 +12,9 @@
 #include "server/runtime/shown_replays.h"
 #include "server/runtime/simulation_loop.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -53,6 +56,8 @@ class ReplayLoop final : public SimulationLoop {
     void finish(const ReplayMail& mail, const std::string& moved, const replay::StoredRun& run,
                 base::Result<SeekResult> result);
     void brought(const CommandMail& fork, const simulation::RunId& run_id, base::Result<simulation::World> world);
+    /// Reports the memory of a session's replays and seeks, if it has changed. 0: no session.
+    void report_memory(std::uint64_t session);
     /// Closes all replays of a session that has ended, and cancels its seeks.
     void forget(std::uint64_t session);
 
@@ -61,6 +66,7 @@ class ReplayLoop final : public SimulationLoop {
     FileJobs jobs_;
     Seeks seeks_;
     ShownReplays shown_;
+    std::map<std::uint64_t, std::size_t> reported_bytes_; // key: number of the session
 };
 
 } // namespace evod::runtime

@@ -53,6 +53,12 @@ struct ReplayDone {
     std::optional<v1::WorldInfo> shown = {}; // nullopt: the request was refused, or the replay is closed
 };
 
+/// The memory of all replays and seeks of a session, after it has changed.
+struct ReplayMemory {
+    std::uint64_t session = 0;
+    std::size_t bytes = 0;
+};
+
 /// Why a replay was closed, or is not opened, for another user.
 base::Refusal replay_taken_back();
 
@@ -97,9 +103,10 @@ struct BreedingDone {
 CommandDone refused(CommandDone done, base::Refusal why);
 
 /// What the network thread answers.
-using Answer = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, Pong, ExportPartDone, BreedingDone>;
+using Answer =
+    std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, RunFound, Pong, ExportPartDone, BreedingDone>;
 /// What the outbox contains. WorldBrought is on its way to the thread of the live worlds (simulations.h).
-using Reply = std::variant<CommandDone, QueryDone, ReplayDone, RunFound, Pong, ExportPartDone, BreedingDone,
-                           WorldBrought, recording::Receipt>;
+using Reply = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, RunFound, Pong, ExportPartDone,
+                           BreedingDone, WorldBrought, recording::Receipt>;
 
 } // namespace evod::runtime

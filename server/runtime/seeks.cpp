@@ -2,6 +2,7 @@
 
 #include "server/base/inline_executor.h"
 #include "server/base/within_memory.h"
+#include "server/simulation/world_bytes.h"
 
 #include <algorithm>
 #include <memory>
@@ -114,18 +115,21 @@ void Seeks::begin(Request request) {
         });
 }
 
-void Seeks::take(const SeekRead& mail) {
+std::uint64_t Seeks::take(const SeekRead& mail) {
     const auto seek = seeks_.find(mail.seek);
     if (seek == seeks_.end()) {
-        return; // it was cancelled
+        return 0; // it was cancelled
     }
+    const std::uint64_t session = seek->second.request.purpose.session();
     if (!*mail.start) {
-        return end(seek, mail.start->error());
+        end(seek, mail.start->error());
+        return session;
     }
     if (const std::string& moved = seek->second.request.purpose.replay; !moved.empty()) {
         cancel([&](const Running& other) { return other.at && other.request.purpose.replay == moved; }, superseded());
     }
     seek->second.at = *std::move(*mail.start);
+    return session;
 }
 
 void Seeks::end(std::map<std::uint64_t, Running>::iterator seek, base::Result<SeekResult> result) {
@@ -162,6 +166,16 @@ void Seeks::cancel_of_session(std::uint64_t session) {
 void Seeks::cancel_of_replay(const std::string& replay) {
     cancel([&](const Running& seek) { return seek.request.purpose.replay == replay; },
            refusal(RefusalCode::NotFound, "the replay has been closed: open it again", base::Reason::WorldNotFound));
+}
+
+std::size_t Seeks::held_bytes(std::uint64_t session) const {
+    std::size_t bytes = 0;
+    for (const auto& [number, seek] : seeks_) {
+        if (seek.at && seek.request.purpose.session() == session) {
+            bytes += simulation::estimated_bytes(seek.at->from.world()) + seek.at->from.changes().held_bytes();
+        }
+    }
+    return bytes;
 }
 
 bool Seeks::under_way() const {

@@ -75,8 +75,8 @@ class Seeks {
         : mailbox_{mailbox}, jobs_{jobs}, executor_{executor} {}
 
     void begin(Request request);
-    /// Handles the result of a job: the seek begins to simulate.
-    void take(const SeekRead& mail);
+    /// Handles the result of a job: the seek begins to simulate. Returns the session to which it belongs; 0: to none.
+    std::uint64_t take(const SeekRead& mail);
     /// Ends the seek that opens a replay for this request, if there is one.
     void cancel_opening(std::uint64_t session, std::uint64_t request_id, const base::Refusal& why);
     /// Ends all seeks of a session.
@@ -87,6 +87,8 @@ class Seeks {
     /// All seeks, by number. Those whose file is being read cannot advance.
     std::map<std::uint64_t, Running>& all() { return seeks_; }
     bool under_way() const;
+    /// Memory of the seeks of a session that simulate.
+    std::size_t held_bytes(std::uint64_t session) const;
     /// Advances a seek until `stop` returns true or it has ended, at least by one tick.
     void advance(std::uint64_t seek, const std::function<bool()>& stop);
     /// Returns and removes the seeks that have ended, in the order in which they ended.

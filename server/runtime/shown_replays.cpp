@@ -1,6 +1,7 @@
 #include "server/runtime/shown_replays.h"
 
 #include "server/base/within_memory.h"
+#include "server/simulation/world_bytes.h"
 
 #include <algorithm>
 #include <memory>
@@ -15,8 +16,9 @@ simulation::Entry& ShownReplays::entry_of(const std::string& name) {
 void ShownReplays::show(const std::string& name, const replay::StoredRun& run, Owner owner, SeekResult result) {
     simulation::RunControl control;
     control.endless = control.paused = true;
-    const replay::ComingChanges& changes = result.rerun.changes();
-    replays_.emplace(name, Shown{run, changes, changes.last_entry(), std::move(owner)});
+    replay::ComingChanges changes = std::move(result.rerun).take_changes();
+    const std::uint64_t entries_read = changes.last_entry();
+    replays_.emplace(name, Shown{run, std::move(changes), entries_read, std::move(owner)});
     laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
         name, run.run_id(), control, std::move(result.rerun).take(), 0, false, std::move(result.there)}));
     (void)entry_of(name).world.take_events(); // discard the events that the seek caused
@@ -25,7 +27,7 @@ void ShownReplays::show(const std::string& name, const replay::StoredRun& run, O
 void ShownReplays::move_to(const std::string& name, SeekResult result) {
     Shown& shown = replays_.find(name)->second;
     simulation::Entry& entry = entry_of(name);
-    shown.changes = result.rerun.changes();
+    shown.changes = std::move(result.rerun).take_changes();
     shown.entries_read = shown.changes.last_entry();
     shown.refreshed = {};
     result.there.replay_of = entry.replay->replay_of;
@@ -57,6 +59,16 @@ std::vector<std::string> ShownReplays::names(std::optional<std::uint64_t> sessio
         }
     }
     return names;
+}
+
+std::size_t ShownReplays::held_bytes(std::uint64_t session) const {
+    std::size_t bytes = 0;
+    for (const auto& [name, shown] : replays_) {
+        if (shown.owner.session == session) {
+            bytes += simulation::estimated_bytes((*laboratory_.find(name))->world) + shown.changes.held_bytes();
+        }
+    }
+    return bytes;
 }
 
 void ShownReplays::follow(simulation::Entry& entry) {

@@ -40,6 +40,9 @@ class ShownReplays {
     /// The replays of a session; nullopt: all replays.
     std::vector<std::string> names(std::optional<std::uint64_t> session = {}) const;
 
+    /// Memory of the replays of a session.
+    std::size_t held_bytes(std::uint64_t session) const;
+
     /// Must be called after every tick of a replay.
     void follow(simulation::Entry& entry);
     /// Reads new records for each running replay that has reached the end of its known records.

@@ -36,7 +36,9 @@ StreamedSnapshot::StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form f
                                                       .height_px = island_->about().height_px()}}
     , now_{now}
     , between_{between}
-    , tiles_(layout_.count()) {
+    , tiles_(layout_.count())
+    , held_{island_->memory()} {
+    held_.set(sizeof(StreamedSnapshot) + 2 * allocation_bytes + tiles_.size() * sizeof(tiles_[0]));
     if (form == Form::Plain) {
         return;
     }
@@ -47,6 +49,7 @@ StreamedSnapshot::StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form f
     for (auto* column : {&crates_.x, &crates_.y}) {
         column->resize(all[crates]);
     }
+    held_.set(held_.bytes() + 2 * sizeof(std::uint32_t) * (all[organisms] + all[crates]));
     if (!previous) {
         return;
     }
@@ -98,7 +101,13 @@ const SharedBytes& StreamedSnapshot::tile(std::uint32_t tile, v1::Detail detail,
         break;
     }
     }
+    kept_encoding_bytes_ += bytes_of(bytes);
     return bytes;
+}
+
+std::size_t StreamedSnapshot::bytes() const {
+    return held_.bytes() + kept_encoding_bytes_ + island_->bytes() / static_cast<std::size_t>(island_.use_count()) +
+           (previous_ ? previous_->bytes() : 0);
 }
 
 StreamedSnapshot::Tile& StreamedSnapshot::full(std::uint32_t tile) {
@@ -106,6 +115,7 @@ StreamedSnapshot::Tile& StreamedSnapshot::full(std::uint32_t tile) {
         return *tiles_[tile];
     }
     Tile& of = *(tiles_[tile] = std::make_unique<Tile>());
+    held_.set(held_.bytes() + sizeof(Tile) + allocation_bytes);
     of.keyframe_made = now_;
     if (!previous_ || !previous_->tiles_[tile]) {
         return of; // no viewer has the base of a delta, so a keyframe is needed
@@ -126,11 +136,12 @@ StreamedSnapshot::Tile& StreamedSnapshot::full(std::uint32_t tile) {
     of.delta = codec::encode_delta(previous_->baseline(tile), here, ticks_, &advanced, &of.delta_seams);
     of.base_sequence = previous_->sequence();
     of.keyframe_made = before.keyframe_made;
+    held_.set(held_.bytes() + of.delta.capacity() + allocation_bytes);
     return of;
 }
 
 codec::QuantisedView StreamedSnapshot::view(std::uint32_t tile) const {
-    return form_ == Form::Tiles ? island_->tiles().full(tile) : codec::QuantisedView{island_->snapshot()};
+    return form_ == Form::Tiles ? island_->full(tile) : codec::QuantisedView{island_->snapshot()};
 }
 
 codec::Counts StreamedSnapshot::counts_before(std::uint32_t tile) const {

@@ -59,6 +59,10 @@ class StreamedSnapshot {
     /// sent  sequence of the last snapshot in which the viewer received this tile at DETAIL_FULL; 0: none.
     const SharedBytes& tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression, std::uint64_t sent);
 
+    /// The memory that would be released with this snapshot: with the previous one, and with its part of the island,
+    /// which other snapshots share.
+    std::size_t bytes() const;
+
   private:
     enum class Encoding { Keyframe, Delta, Repeat };
     /// A tile that at least one viewer received at DETAIL_FULL.
@@ -91,6 +95,8 @@ class StreamedSnapshot {
     runtime::Clock::duration between_;
     std::vector<std::unique_ptr<Tile>> tiles_; // index: tile; nullptr: no viewer received it
     Displacements organisms_, crates_;
+    SnapshotBytes held_; // everything except the island and the encodings
+    std::size_t kept_encoding_bytes_ = 0;
 };
 
 using StreamedSnapshotPtr = std::shared_ptr<StreamedSnapshot>;
@@ -108,6 +114,8 @@ class SentState {
 
     /// Makes the next frame consist of keyframes.
     void reset() { *this = {}; }
+    /// Whether the next frame will consist of keyframes, because none was sent, or after reset().
+    bool is_reset() const { return sequence_ == 0; }
 
   private:
     std::uint64_t sequence_ = 0;

@@ -50,9 +50,8 @@ std::string_view body_to_send(Message& message, std::string_view body, const cod
     return compressed;
 }
 
-SharedBytes shared(std::string bytes) {
-    return std::make_shared<const std::string>(std::move(bytes));
-}
+/// Memory of the fields that describe an island, with their texts and messages.
+constexpr std::size_t about_bytes = sizeof(v1::SnapshotFrame) + sizeof(v1::LiveStatistics) + sizeof(v1::Speed) + 400;
 
 } // namespace
 
@@ -80,25 +79,56 @@ v1::SnapshotFrame frame_without_entities(const runtime::Snapshot& snapshot, cons
     return frame;
 }
 
-EncodedIsland::EncodedIsland(v1::SnapshotFrame about, codec::QuantisedSnapshot snapshot, codec::Compressor& compressor)
+EncodedIsland::EncodedIsland(v1::SnapshotFrame about, codec::QuantisedSnapshot snapshot, codec::Compressor& compressor,
+                             SnapshotMemory* memory)
     : snapshot_{std::make_shared<const codec::QuantisedSnapshot>(std::move(snapshot))}
     , about_{std::move(about)}
-    , compressor_{&compressor} {
+    , compressor_{&compressor}
+    , held_{memory} {
     codec::describe(*snapshot_, about_);
+    count_memory();
+}
+
+void EncodedIsland::count_memory() {
+    std::size_t bytes = sizeof(EncodedIsland) - sizeof(v1::SnapshotFrame) + about_bytes +
+                        sizeof(codec::QuantisedSnapshot) + 2 * allocation_bytes;
+    for (const auto part : codec::snapshot_parts) {
+        const codec::Entities& of = (*snapshot_).*part;
+        for (const codec::Column* column : {&of.id, &of.x, &of.y, &of.width, &of.height, &of.heading}) {
+            bytes += column->empty() ? 0 : column->size() * sizeof(std::uint32_t) + allocation_bytes;
+        }
+    }
+    held_.set(bytes + (tiles_ ? tiles_->held_bytes() : 0) + coarse_.size() * sizeof(coarse_[0]));
+}
+
+const SharedBytes& EncodedIsland::keep(SharedBytes& place, std::string bytes) {
+    place = counted(std::move(bytes), memory());
+    kept_encoding_bytes_ += bytes_of(place);
+    return place;
 }
 
 codec::SnapshotTiles& EncodedIsland::tiles() {
     if (!tiles_) {
         tiles_.emplace(snapshot_, codec::tile_layout(about_.width_px(), about_.height_px()));
+        count_memory();
     }
     return *tiles_;
+}
+
+codec::QuantisedView EncodedIsland::full(std::uint32_t tile) {
+    const std::size_t before = tiles().held_bytes();
+    const codec::QuantisedView view = tiles_->full(tile);
+    if (tiles_->held_bytes() != before) {
+        count_memory();
+    }
+    return view;
 }
 
 const SharedBytes& EncodedIsland::plain() {
     if (!plain_) {
         v1::SnapshotFrame frame = about_;
         codec::encode_plain(*snapshot_, frame);
-        plain_ = shared(frame.SerializeAsString());
+        keep(plain_, frame.SerializeAsString());
     }
     return plain_;
 }
@@ -124,19 +154,19 @@ SharedBytes EncodedIsland::whole(std::uint64_t base_sequence, std::string_view b
     frame.AppendToString(&bytes);
     append_field_head(v1::SnapshotFrame::kBodyFieldNumber, sent.size(), bytes);
     bytes += sent;
-    return shared(std::move(bytes));
+    return counted(std::move(bytes), memory());
 }
 
 const SharedBytes& EncodedIsland::without_tiles() {
     if (!without_tiles_) {
         v1::SnapshotFrame frame = delta_frame();
         frame.set_tile_px(tiles().layout().tile_px);
-        without_tiles_ = shared(frame.SerializeAsString());
+        keep(without_tiles_, frame.SerializeAsString());
     }
     return without_tiles_;
 }
 
-SharedBytes EncodedIsland::encode_tile(v1::SnapshotTile tile, std::string_view body, const codec::Seams& seams,
+std::string EncodedIsland::encode_tile(v1::SnapshotTile tile, std::string_view body, const codec::Seams& seams,
                                        v1::Compression compression) {
     codec::set_counts(tiles().counts(tile.tile()), tile);
     tile.set_sequence(about_.sequence());
@@ -150,7 +180,7 @@ SharedBytes EncodedIsland::encode_tile(v1::SnapshotTile tile, std::string_view b
     tile.AppendToString(&field);
     append_field_head(v1::SnapshotTile::kBodyFieldNumber, sent.size(), field);
     field += sent;
-    return shared(std::move(field));
+    return field;
 }
 
 SharedBytes EncodedIsland::full_tile(std::uint32_t tile, std::uint64_t base_sequence, std::string_view body,
@@ -159,12 +189,13 @@ SharedBytes EncodedIsland::full_tile(std::uint32_t tile, std::uint64_t base_sequ
     message.set_tile(tile);
     message.set_detail(v1::DETAIL_FULL);
     message.set_base_sequence(base_sequence);
-    return encode_tile(std::move(message), body, seams, compression);
+    return counted(encode_tile(std::move(message), body, seams, compression), memory());
 }
 
 const SharedBytes& EncodedIsland::coarse_tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression) {
     if (coarse_.empty()) {
         coarse_.resize(tiles().layout().count());
+        count_memory();
     }
     const bool dots = detail == v1::DETAIL_DOTS;
     SharedBytes& bytes = coarse_[tile][(dots ? 0 : 2) + (compression == v1::COMPRESSION_ZSTD ? 1 : 0)];
@@ -172,7 +203,8 @@ const SharedBytes& EncodedIsland::coarse_tile(std::uint32_t tile, v1::Detail det
         v1::SnapshotTile message;
         message.set_tile(tile);
         message.set_detail(detail);
-        bytes = encode_tile(std::move(message), dots ? tiles().dots(tile) : tiles().density(tile), {}, compression);
+        keep(bytes,
+             encode_tile(std::move(message), dots ? tiles().dots(tile) : tiles().density(tile), {}, compression));
     }
     return bytes;
 }

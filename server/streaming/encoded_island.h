@@ -12,6 +12,7 @@
 #include "proto/codec/shared_bytes.h"
 #include "proto/codec/tiles.h"
 #include "server/runtime/snapshot.h"
+#include "server/streaming/snapshot_memory.h"
 
 #include <array>
 #include <cstdint>
@@ -22,8 +23,6 @@
 
 namespace evod::streaming {
 
-using codec::SharedBytes;
-
 /// The fields of a SnapshotFrame that describe the world and the island. Entities, codec and sequence are not set.
 v1::SnapshotFrame frame_without_entities(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island);
 
@@ -31,13 +30,21 @@ class EncodedIsland {
   public:
     /// about       a frame with its sequence, but without entities and codec.
     /// compressor  must exist until the last encoding is computed.
-    EncodedIsland(v1::SnapshotFrame about, codec::QuantisedSnapshot snapshot, codec::Compressor& compressor);
+    /// memory      counts the memory of the island and its encodings; nullptr: none does.
+    EncodedIsland(v1::SnapshotFrame about, codec::QuantisedSnapshot snapshot, codec::Compressor& compressor,
+                  SnapshotMemory* memory = nullptr);
 
     const v1::SnapshotFrame& about() const { return about_; }
     std::uint64_t sequence() const { return about_.sequence(); }
     const codec::QuantisedSnapshot& snapshot() const { return *snapshot_; }
     /// The snapshot divided into tiles. The first call divides it.
     codec::SnapshotTiles& tiles();
+    /// The entities of a tile.
+    codec::QuantisedView full(std::uint32_t tile);
+
+    SnapshotMemory* memory() const { return held_.memory(); }
+    /// The memory of the island and of the encodings that it has computed and keeps.
+    std::size_t bytes() const { return held_.bytes() + kept_encoding_bytes_; }
 
     /// Encodes fields 1 to 49 of a frame with CODEC_PLAIN.
     const SharedBytes& plain();
@@ -53,13 +60,18 @@ class EncodedIsland {
     const SharedBytes& coarse_tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression);
 
   private:
+    /// Counts the memory of everything except the encodings, which are counted as long as a session sends them.
+    void count_memory();
+    const SharedBytes& keep(SharedBytes& place, std::string bytes);
     v1::SnapshotFrame delta_frame() const;
-    SharedBytes encode_tile(v1::SnapshotTile tile, std::string_view body, const codec::Seams& seams,
+    std::string encode_tile(v1::SnapshotTile tile, std::string_view body, const codec::Seams& seams,
                             v1::Compression compression);
 
     std::shared_ptr<const codec::QuantisedSnapshot> snapshot_;
     v1::SnapshotFrame about_;
     codec::Compressor* compressor_;
+    SnapshotBytes held_;
+    std::size_t kept_encoding_bytes_ = 0;
     std::optional<codec::SnapshotTiles> tiles_;
     SharedBytes plain_, without_tiles_;
     std::vector<std::array<SharedBytes, 4>> coarse_; // index: tile; dots and density, each uncompressed and compressed

@@ -14,6 +14,9 @@ namespace {
 /// 1 to 5 ms together.
 constexpr std::size_t steps_at_once = 128;
 
+/// A subscription receives keyframes on request at most once per interval between its snapshots, but at least this often.
+constexpr std::chrono::seconds keyframe_period_max{1};
+
 runtime::Clock::duration between_snapshots(double rate_hz) {
     return std::chrono::duration_cast<runtime::Clock::duration>(std::chrono::duration<double>{1 / rate_hz});
 }
@@ -60,7 +63,7 @@ bool SnapshotStreams::unsubscribe(std::uint64_t session, SnapshotQueue& queue, s
         return false;
     }
     leave_group(found->second);
-    queue.subscriptions.erase(found);
+    queue.unsubscribe(subscription_id);
     if (queue.subscriptions.empty()) {
         queues_.erase(session);
     }
@@ -85,23 +88,50 @@ void SnapshotStreams::leave_group(const SnapshotSubscription& subscription) {
     }
 }
 
-bool SnapshotStreams::send_keyframes(SnapshotQueue& queue, std::uint32_t subscription_id) {
+std::optional<std::size_t> SnapshotStreams::send_keyframes(SnapshotQueue& queue, std::uint32_t subscription_id) {
     const auto found = queue.subscriptions.find(subscription_id);
     if (found == queue.subscriptions.end()) {
-        return false;
+        return std::nullopt;
     }
-    each_newest(found->second, [&](std::uint32_t island, const StreamedSnapshotPtr& newest) {
-        queue.send_keyframe(subscription_id, island, newest);
+    SnapshotSubscription& subscription = found->second;
+    const auto at = std::max(subscription.keyframes_from, queue.now());
+    std::size_t examined = 0;
+    each_newest(subscription, [&](std::uint32_t island, const StreamedSnapshotPtr& newest) {
+        if (queue.send_keyframe(subscription_id, island, newest, at)) {
+            subscription.keyframes_from =
+                at + std::min<runtime::Clock::duration>(between_snapshots(subscription.rate_hz), keyframe_period_max);
+        }
+        ++examined;
     });
-    return true;
+    return examined;
 }
 
-void SnapshotStreams::set_view(SnapshotQueue& queue, std::uint32_t subscription_id, const v1::View& view) {
+std::size_t SnapshotStreams::set_view(SnapshotQueue& queue, std::uint32_t subscription_id, const v1::View& view) {
     SnapshotSubscription& subscription = queue.subscriptions.at(subscription_id);
     subscription.set_view(view);
+    std::size_t sent_again = 0;
     each_newest(subscription, [&](std::uint32_t island, const StreamedSnapshotPtr& newest) {
         queue.send_again(subscription_id, island, newest);
+        ++sent_again;
     });
+    return sent_again;
+}
+
+std::map<std::uint64_t, std::size_t> SnapshotStreams::shared_bytes() const {
+    std::map<GroupName, std::size_t> of_groups;
+    for (const auto& [name, group] : groups_) {
+        for (const auto& [island, newest] : group.newest) {
+            of_groups[name] += newest->bytes();
+        }
+    }
+    std::map<std::uint64_t, std::size_t> of_sessions;
+    for (const auto& [session, queue] : queues_) {
+        for (const auto& [id, subscription] : queue->subscriptions) {
+            const GroupName name = group_of(subscription);
+            of_sessions[session] += of_groups[name] / groups_.at(name).subscription_count;
+        }
+    }
+    return of_sessions;
 }
 
 void SnapshotStreams::forget_world(const std::string& world) {
@@ -113,7 +143,7 @@ void SnapshotStreams::forget_world(const std::string& world) {
     for (const auto& [session, queue] : queues_) {
         for (auto& [id, subscription] : queue->subscriptions) {
             if (subscription.world == world) {
-                subscription.islands.clear();
+                queue->forget_islands(subscription, 0);
             }
         }
     }
@@ -126,10 +156,15 @@ void SnapshotStreams::each_newest(const SnapshotSubscription& subscription, cons
     if (group == groups_.end()) {
         return;
     }
-    for (const auto& [island, newest] : group->second.newest) {
-        if (!subscription.island || *subscription.island == island) {
-            what(island, newest);
+    const auto& all = group->second.newest;
+    if (subscription.island) {
+        if (const auto found = all.find(*subscription.island); found != all.end()) {
+            what(found->first, found->second);
         }
+        return;
+    }
+    for (const auto& [island, newest] : all) {
+        what(island, newest);
     }
 }
 
@@ -212,8 +247,7 @@ void SnapshotStreams::begin(InProgress& of, runtime::Clock::time_point now) {
                 continue;
             }
             queue->count_dropped(subscription, of.snapshot.replaced_count);
-            subscription.islands.erase(subscription.islands.lower_bound(snapshot.island_count),
-                                       subscription.islands.end());
+            queue->forget_islands(subscription, snapshot.island_count);
         }
     }
 }
@@ -255,7 +289,8 @@ void SnapshotStreams::advance(InProgress& of, std::size_t& steps_left) {
             if (!encoded) {
                 v1::SnapshotFrame about = frame_without_entities(snapshot, island);
                 about.set_sequence(++sequence_);
-                encoded = std::make_shared<EncodedIsland>(std::move(about), quantise(island, headings), compressor_);
+                encoded =
+                    std::make_shared<EncodedIsland>(std::move(about), quantise(island, headings), compressor_, memory_);
             }
             StreamedSnapshotPtr& newest = viewer.group->newest[island.island];
             if (!newest || newest->sequence() != encoded->sequence()) { // this viewer is the first of its group

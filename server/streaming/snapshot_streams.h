@@ -30,6 +30,9 @@ namespace evod::streaming {
 
 class SnapshotStreams {
   public:
+    /// memory  counts the memory of all snapshots; must outlive them. nullptr: they are not counted.
+    explicit SnapshotStreams(SnapshotMemory* memory = nullptr) : memory_{memory} {}
+
     /// Adds a subscription to the queue of a session. If its group already has snapshots, the newest ones are sent at
     /// once.
     ///
@@ -41,10 +44,16 @@ class SnapshotStreams {
     /// Must be called when a session has ended. Its queue is not used afterwards.
     void forget(std::uint64_t session);
 
-    /// Sends the newest snapshots of a subscription as keyframes. Returns false if the queue has no such subscription.
-    bool send_keyframes(SnapshotQueue& queue, std::uint32_t subscription_id);
-    /// Changes the view of a subscription that has one, and sends the newest snapshots again.
-    void set_view(SnapshotQueue& queue, std::uint32_t subscription_id, const v1::View& view);
+    /// Sends the newest snapshots of a subscription as keyframes, except those of islands of which a keyframe waits
+    /// already. They wait if the subscription has sent such keyframes within the interval between its snapshots. Returns
+    /// their number, with the exceptions; nullopt: the queue has no such subscription.
+    std::optional<std::size_t> send_keyframes(SnapshotQueue& queue, std::uint32_t subscription_id);
+    /// Changes the view of a subscription that has one, and sends the newest snapshots again. Returns their number.
+    std::size_t set_view(SnapshotQueue& queue, std::uint32_t subscription_id, const v1::View& view);
+
+    /// Returns, by session, its part of the memory of the snapshots that sessions share. It walks the snapshots of all
+    /// groups.
+    std::map<std::uint64_t, std::size_t> shared_bytes() const;
 
     /// Must be called when a world was deleted. Drops all snapshots of the world.
     void forget_world(const std::string& world);
@@ -101,6 +110,7 @@ class SnapshotStreams {
     template <class Do>
     void each_newest(const SnapshotSubscription& subscription, const Do& what) const;
 
+    SnapshotMemory* memory_;
     // Queues of the sessions that have subscriptions; key: number of the session.
     std::map<std::uint64_t, SnapshotQueue*> queues_;
     std::uint64_t newcomers_ = 0, sequence_ = 0; // the last SnapshotSubscription::newcomer, and the last sequence

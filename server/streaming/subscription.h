@@ -11,10 +11,10 @@
 #include "server/streaming/delta_stream.h"
 
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace evod::streaming {
 
@@ -27,6 +27,7 @@ struct SnapshotSubscription {
     // subscriptions.
     std::uint64_t newcomer = 0;
     std::uint64_t dropped_count = 0;
+    runtime::Clock::time_point keyframes_from; // requested keyframes are sent at this time or later
     v1::Codec codec = v1::CODEC_PLAIN;
     v1::Compression compression = v1::COMPRESSION_NONE;
     // Limit of unacknowledged snapshots of one island; nullopt: no limit.
@@ -39,12 +40,14 @@ struct SnapshotSubscription {
     Form form() const;
 
     struct Island {
-        StreamedSnapshotPtr waiting;              // the newest snapshot, until it is sent in the wanted detail
-        std::optional<v1::Detail> shown;          // detail in which `waiting` was sent; nullopt: it was not sent
-        runtime::Clock::time_point not_before;    // the bandwidth limit delays the snapshot until this time
-        SentState sent;                           // decides which tiles of the next snapshot can be deltas
-        std::deque<std::uint64_t> unacknowledged; // sequences in rising order; empty without unacknowledged_max
-        std::uint64_t turn = 0;                   // number of its turn to be sent; 0: it waits for an acknowledgement
+        StreamedSnapshotPtr waiting;           // the newest snapshot, until it is sent in the wanted detail
+        std::optional<v1::Detail> shown;       // detail in which `waiting` was sent; nullopt: it was not sent
+        runtime::Clock::time_point not_before; // the snapshot waits until this time
+        SentState sent;                        // decides which tiles of the next snapshot can be deltas
+        // Sequences in rising order; empty without unacknowledged_max. A vector, because an empty one needs no memory.
+        std::vector<std::uint64_t> unacknowledged;
+        // Number of its turn to be sent; 0: nothing waits, or it waits for an acknowledgement.
+        std::uint64_t turn = 0;
     };
     std::map<std::uint32_t, Island> islands; // key: index of the island
 };

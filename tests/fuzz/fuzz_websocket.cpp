@@ -242,7 +242,7 @@ class Play {
     const std::uint8_t how_;
     support::ManualClock clock_;
     network::LimitCounters limit_counters_;
-    network::SendMemory send_memory_{network::client_buffer_bytes_max, [] { require(false); }};
+    network::SendMemory send_memory_{2 * network::client_buffer_bytes_max, [] { require(false); }};
     boost::asio::io_context context_{1};
     network::SessionHost host_{limit_counters_, send_memory_};
     network::HttpService service_{.limit_counters = limit_counters_,

@@ -98,9 +98,10 @@ base::Result<access::Visitor> admit(const std::string& token) {
 }
 
 WatchedServer::WatchedServer()
-    : send_memory_{network::client_buffer_bytes_max, [] { require(false); }} // a script leaves less than this unread
+    : send_memory_{2 * network::client_buffer_bytes_max, [] { require(false); }}
+    // a script leaves less than this unread
     , outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
-    , streams_{sessions_, simulations_}
+    , streams_{sessions_, simulations_, send_memory_}
     , dispatcher_{context_,
                   simulations_,
                   outbox_,

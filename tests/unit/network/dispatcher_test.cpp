@@ -94,7 +94,7 @@ class DispatcherTest : public Loopback {
     runtime::Simulations simulations{false, mailbox_capacity};
     runtime::Mailbox& mailbox = simulations.mailbox_of("");
     runtime::Outbox outbox{[] {}};
-    Streams streams{sessions, simulations};
+    Streams streams{sessions, simulations, memory};
     int shut_downs = 0;
     static constexpr std::size_t replays_max = 4;
     Dispatcher dispatcher{context,

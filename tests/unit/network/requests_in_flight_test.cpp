@@ -49,6 +49,17 @@ TEST_F(RequestsInFlightTest, ReserveMemoryForAnswers) {
     EXPECT_EQ(memory.bytes(), 20u);
 }
 
+TEST_F(RequestsInFlightTest, CountCommandsUnderWay) {
+    EXPECT_EQ(requests.commands_under_way, 0u);
+    requests.begin_command(100);
+    requests.begin_command(30);
+    requests.end_command(100);
+    EXPECT_EQ(requests.commands_under_way, 1u);
+    EXPECT_EQ(memory.bytes(), 30u);
+    requests.end_command(30);
+    EXPECT_EQ(requests.commands_under_way, 0u);
+}
+
 TEST_F(RequestsInFlightTest, OfAnEndedSessionHoldNoMemory) {
     requests.expect(100);
     requests.hold_back(request(1));

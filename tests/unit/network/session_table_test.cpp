@@ -126,28 +126,105 @@ TEST_F(SessionTableTest, CountsEndedSessions) {
     EXPECT_TRUE(table.sessions().empty());
 }
 
-TEST_F(SessionTableTest, EvictsTheSessionsWithTheMostMemory) {
-    SendMemory little{1500, [] {}};
-    SessionHost small_host{counters, little};
-    small_host.clock = &clock;
-    small_host.limits = host.limits;
-    small_host.admit = host.admit;
-    SessionTable small{small_host, 4};
-    small_host.ended = [&](Session& ended) { small.forget(ended); };
-    for (int i = 0; i < 2; ++i) {
-        tcp::acceptor acceptor{context, tcp::endpoint{asio::ip::address_v4::loopback(), 0}};
-        sockets.emplace_back(context).connect(acceptor.local_endpoint());
-        small.accept(std::make_unique<Transport>(acceptor.accept(), nullptr));
+/// Sessions of two users, which a table with little memory evicts.
+class EvictionTest : public SessionTableTest {
+  protected:
+    EvictionTest() {
+        little_host.clock = &clock;
+        little_host.limits = host.limits;
+        little_host.admit = [this](const std::string&, const std::string&) {
+            return access::Visitor{.name = user, .role = Role::Viewer};
+        };
+        little_host.ended = [this](Session& ended) { little_table.forget(ended); };
     }
-    find_session(small.sessions(), 1)->requests.expect(1000);
-    find_session(small.sessions(), 2)->requests.expect(2000);
-    small.evict();
-    settle();
-    EXPECT_EQ(find_session(small.sessions(), 2), nullptr);
+    void TearDown() override {
+        const Sessions all = little_table.sessions();
+        for (const auto& [number, session] : all) {
+            session->close();
+        }
+        settle();
+        EXPECT_EQ(little.bytes(), 0u);
+        SessionTableTest::TearDown();
+    }
+    /// A session of a user that holds so much memory.
+    Session& holding(const std::string& name, std::size_t bytes) {
+        user = name;
+        tcp::acceptor acceptor{context, tcp::endpoint{asio::ip::address_v4::loopback(), 0}};
+        tcp::socket& client = sockets.emplace_back(context);
+        client.connect(acceptor.local_endpoint());
+        little_table.accept(std::make_unique<Transport>(acceptor.accept(), nullptr));
+        v1::ClientMessage message;
+        message.mutable_hello()->set_protocol_version(codec::protocol_version);
+        asio::write(client, asio::buffer(codec::encode_frame(codec::Channel::Control, message)));
+        settle();
+        Session& session = *little_table.sessions().rbegin()->second;
+        EXPECT_TRUE(session.greeted());
+        session.requests.expect(static_cast<std::ptrdiff_t>(bytes - session.held_bytes()));
+        return session;
+    }
+    /// Numbers of the sessions that remain.
+    std::vector<std::uint64_t> evict() {
+        little_table.evict();
+        settle();
+        std::vector<std::uint64_t> numbers;
+        for (const auto& [number, session] : little_table.sessions()) {
+            numbers.push_back(number);
+        }
+        return numbers;
+    }
+
+    static constexpr std::size_t kib = 1 << 10;
+    SendMemory little{1000 * kib, [] {}};
+    SessionHost little_host{counters, little};
+    SessionTable little_table{little_host, 100};
+    std::string user;
+};
+
+TEST_F(EvictionTest, ClosesTheLargestSessionOfTheUserAboveHalf) {
+    holding("eve", 100 * kib);
+    holding("eve", 300 * kib);
+    holding("eve", 200 * kib);
+    holding("ada", 350 * kib);
+    EXPECT_EQ(evict(), (std::vector<std::uint64_t>{1, 3, 4}));
     EXPECT_EQ(counters.count(Limit::ClientBufferBytes), 1u);
-    find_session(small.sessions(), 1)->close();
-    settle();
-    EXPECT_TRUE(small.sessions().empty());
+}
+
+TEST_F(EvictionTest, LeavesUsersWithinTheirHalf) {
+    holding("eve", 500 * kib);
+    holding("ada", 450 * kib);
+    EXPECT_EQ(evict(), (std::vector<std::uint64_t>{1, 2}));
+}
+
+TEST_F(EvictionTest, ASingleLargeSessionMayHoldMoreThanHalf) {
+    holding("eve", 600 * kib);
+    holding("eve", 20 * kib);
+    holding("ada", 300 * kib);
+    EXPECT_EQ(evict(), (std::vector<std::uint64_t>{1, 2, 3}));
+    holding("ada", 150 * kib);
+    EXPECT_EQ(evict(), (std::vector<std::uint64_t>{2, 3, 4})) << "all is full";
+}
+
+TEST_F(EvictionTest, TakesFromTheUserWithTheMostIfAllIsFull) {
+    holding("eve", 100 * kib);
+    holding("eve", 350 * kib);
+    holding("ada", 400 * kib);
+    holding("bob", 200 * kib);
+    EXPECT_EQ(evict(), (std::vector<std::uint64_t>{1, 3, 4}));
+}
+
+TEST_F(EvictionTest, ClosesSessionsWithACommandUnderWayLast) {
+    Session& commands = holding("eve", 300 * kib);
+    commands.requests.begin_command(0);
+    holding("eve", 250 * kib);
+    EXPECT_EQ(evict(), std::vector<std::uint64_t>{1});
+    commands.requests.end_command(0);
+}
+
+TEST_F(EvictionTest, CountsTheSnapshotsThatSessionsShare) {
+    little_host.shared_snapshot_bytes = [] { return std::map<std::uint64_t, std::size_t>{{2, 400 * kib}}; };
+    holding("eve", 200 * kib);
+    holding("eve", 100 * kib);
+    EXPECT_EQ(evict(), std::vector<std::uint64_t>{1});
 }
 
 } // namespace

@@ -41,7 +41,7 @@ class StreamsTest : public Loopback {
     runtime::Simulations simulations{false};
     runtime::StreamDemand& demand = simulations.part_of("").demand;
     runtime::Mailbox& mailbox = simulations.mailbox_of("");
-    Streams streams{sessions, simulations};
+    Streams streams{sessions, simulations, memory};
 };
 
 TEST_F(StreamsTest, EventsGoToTheSubscribersOfTheirWorld) {
@@ -59,6 +59,25 @@ TEST_F(StreamsTest, EventsGoToTheSubscribersOfTheirWorld) {
     publish(""); // of the whole server
     EXPECT_EQ(all.events.size(), 3u);
     EXPECT_EQ(one.events.size(), 2u);
+}
+
+TEST_F(StreamsTest, UnsubscribingFromNothingChangesNothing) {
+    Client& client = connect(Role::Viewer);
+    streams.subscribe(*client.session, EventSubscription{});
+    mailbox.drain();
+    EXPECT_FALSE(streams.unsubscribe(*client.session, 99));
+    EXPECT_FALSE(mailbox.pending()) << "the simulation thread is not woken";
+    EXPECT_TRUE(streams.unsubscribe(*client.session, 1));
+    EXPECT_TRUE(mailbox.pending());
+}
+
+TEST_F(StreamsTest, ASubscriptionCountsAsMemoryOfItsSession) {
+    Client& client = connect(Role::Viewer);
+    const std::size_t before = client.session->held_bytes();
+    const std::uint32_t id = streams.subscribe(*client.session, snapshots_of("w", 1));
+    EXPECT_GT(client.session->held_bytes(), before);
+    EXPECT_TRUE(streams.unsubscribe(*client.session, id));
+    EXPECT_EQ(client.session->held_bytes(), before);
 }
 
 TEST_F(StreamsTest, EventsOfReplaysGoToTheirOwnSubscribers) {

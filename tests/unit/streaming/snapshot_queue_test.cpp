@@ -123,6 +123,68 @@ TEST_F(SnapshotQueueTest, ARequestedKeyframeIsTheNewestSnapshot) {
     EXPECT_EQ(frame->base_sequence(), 0U);
 }
 
+TEST_F(SnapshotQueueTest, AKeyframeThatWaitsIsNotRequestedAgain) {
+    subscribe();
+    queue.offer(1, 0, snapshot(1));
+    next();
+    EXPECT_TRUE(queue.send_keyframe(1, 0, newest));
+    const std::size_t bytes = queue.held_bytes();
+    for (int i = 0; i < 100; ++i) {
+        EXPECT_FALSE(queue.send_keyframe(1, 0, newest));
+    }
+    EXPECT_EQ(wakes, 1);
+    EXPECT_EQ(queue.held_bytes(), bytes);
+    EXPECT_TRUE(next());
+    EXPECT_FALSE(next());
+    EXPECT_TRUE(queue.send_keyframe(1, 0, newest)) << "it was sent";
+}
+
+TEST_F(SnapshotQueueTest, AnIslandKeepsItsTurn) {
+    subscribe();
+    const auto shared = snapshot(1);
+    queue.offer(1, 0, shared);
+    queue.offer(1, 1, shared);
+    const std::size_t bytes = queue.held_bytes();
+    for (int i = 0; i < 100; ++i) {
+        queue.send_again(1, 0, shared);
+    }
+    EXPECT_EQ(queue.held_bytes(), bytes);
+    queue.unsubscribe(1);
+    subscribe();
+    EXPECT_FALSE(next());
+}
+
+TEST_F(SnapshotQueueTest, AKeyframeCanBeDelayed) {
+    subscribe();
+    queue.offer(1, 0, snapshot(1));
+    next();
+    queue.send_keyframe(1, 0, newest, clock.now() + 10ms);
+    EXPECT_FALSE(next());
+    EXPECT_EQ(queue.retry_at(), clock.now() + 10ms);
+    queue.send_again(1, 0, newest); // the view has changed
+    EXPECT_TRUE(next());
+    EXPECT_FALSE(next());
+    queue.send_keyframe(1, 0, newest, clock.now() + 10ms);
+    EXPECT_FALSE(next());
+    clock.advance(10ms);
+    EXPECT_EQ(next()->base_sequence(), 0U);
+    EXPECT_FALSE(next());
+}
+
+TEST_F(SnapshotQueueTest, HoldsNothingAfterTheLastSubscription) {
+    subscribe().unacknowledged_max = 5;
+    const std::size_t before = queue.held_bytes();
+    for (std::uint64_t sequence = 1; sequence <= 4; ++sequence) {
+        queue.offer(1, 0, snapshot(sequence));
+        next();
+    }
+    EXPECT_GT(queue.held_bytes(), before + 4 * sizeof(std::uint64_t));
+    queue.forget_islands(queue.subscriptions.at(1), 0);
+    EXPECT_EQ(queue.held_bytes(), before);
+    queue.unsubscribe(1);
+    EXPECT_EQ(queue.held_bytes(), 0U);
+}
+
 TEST_F(SnapshotQueueTest, UnacknowledgedSnapshotsAreLimited) {
     subscribe().unacknowledged_max = 2;
     for (std::uint64_t sequence = 1; sequence <= 2; ++sequence) {

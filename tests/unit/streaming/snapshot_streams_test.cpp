@@ -120,6 +120,34 @@ TEST_F(SnapshotStreamsTest, OnlyViewersThatWantHeadingsGetThem) {
     EXPECT_EQ(heading_count(without), 0);
 }
 
+TEST_F(SnapshotStreamsTest, RequestedKeyframesComeOncePerPeriod) {
+    Session& viewer = subscribed("few", v1::CODEC_DELTA, 10);
+    deliver("few", 4, 7);
+    distribute_all();
+    EXPECT_EQ(ticks(viewer).size(), 4U);
+    EXPECT_EQ(streams.send_keyframes(viewer.queue, 1), 4U);
+    EXPECT_EQ(ticks(viewer).size(), 4U);
+    EXPECT_EQ(streams.send_keyframes(viewer.queue, 1), 4U);
+    EXPECT_EQ(streams.send_keyframes(viewer.queue, 1), 4U) << "they cost as much";
+    EXPECT_TRUE(ticks(viewer).empty());
+    clock.advance(std::chrono::milliseconds{100});
+    EXPECT_EQ(ticks(viewer).size(), 4U);
+    clock.advance(std::chrono::milliseconds{100});
+    EXPECT_TRUE(ticks(viewer).empty());
+    EXPECT_EQ(streams.send_keyframes(viewer.queue, 2), std::nullopt);
+}
+
+TEST_F(SnapshotStreamsTest, ARareStreamGivesKeyframesEachSecond) {
+    Session& viewer = subscribed("few", v1::CODEC_DELTA, 0.001);
+    deliver("few", 1, 7);
+    distribute_all();
+    for (int second = 0; second < 3; ++second) {
+        streams.send_keyframes(viewer.queue, 1);
+        clock.advance(std::chrono::seconds{1});
+        EXPECT_EQ(ticks(viewer).size(), 1U);
+    }
+}
+
 TEST_F(SnapshotStreamsTest, OtherWorldsAreServedBetweenTurns) {
     Session &of_many = subscribed("many"), &of_few = subscribed("few", v1::CODEC_DELTA);
     deliver("many", many);
