@@ -26,10 +26,11 @@ class FairQueue {
         count_one(user);
         items_.push_back({std::move(user), std::move(item)});
     }
-    /// Adds an item that comes before all others of its user.
+    /// Adds an item that comes before all others of its user, but not before those of other users.
     void add_first(std::string user, T item) {
         count_one(user);
-        items_.push_front({std::move(user), std::move(item)});
+        const auto before = std::ranges::find(items_, user, &Entry::user);
+        items_.insert(before, Entry{std::move(user), std::move(item)});
     }
     /// Removes the next item that `may` allows; nullopt: there is none. may(user, item) returns a bool.
     template <class May>

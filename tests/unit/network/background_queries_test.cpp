@@ -139,6 +139,7 @@ TEST_F(BackgroundQueriesTest, ASecondExportReplacesTheFirst) {
 }
 
 TEST_F(BackgroundQueriesTest, AUserHasHalfOfTheExports) {
+    runtime::JobTurns::Turn holds_all{turns, "test", never};
     for (std::uint32_t i = 0; i < exports_max / 2; ++i) {
         begin_export(connect_as("eve"), 1);
     }
@@ -150,6 +151,7 @@ TEST_F(BackgroundQueriesTest, AUserHasHalfOfTheExports) {
     EXPECT_EQ(counters.count(Limit::Exports), 1u);
     Client& ada = connect_as("ada");
     begin_export(ada, 3);
+    holds_all.give_back();
     deliver(exports_max / 2 + 1);
     for (const auto& client : clients) {
         EXPECT_EQ(client->responses.size(), 1u);
@@ -158,6 +160,7 @@ TEST_F(BackgroundQueriesTest, AUserHasHalfOfTheExports) {
 }
 
 TEST_F(BackgroundQueriesTest, SessionsWithoutATokenShareAnAddress) {
+    runtime::JobTurns::Turn holds_all{turns, "test", never};
     for (std::uint32_t i = 0; i < exports_max / 2; ++i) {
         begin_export(connect_as(""), 1);
     }
@@ -165,6 +168,7 @@ TEST_F(BackgroundQueriesTest, SessionsWithoutATokenShareAnAddress) {
     begin_export(last, 2);
     ASSERT_EQ(last.responses.size(), 1u);
     EXPECT_EQ(last.responses[0].status().reason(), v1::REASON_EXPORTS_MAX);
+    holds_all.give_back();
     deliver(exports_max / 2);
 }
 
