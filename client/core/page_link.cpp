@@ -14,6 +14,12 @@ bool is_host(std::string_view text) {
     });
 }
 
+/// Whether the name or address is one of the loopback interface.
+bool is_this_machine(std::string_view host) {
+    return host == "localhost" || host == "::1" ||
+           (host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string_view::npos);
+}
+
 } // namespace
 
 bool fits_into_url(std::string_view text) {
@@ -40,7 +46,8 @@ std::string page_of(const evod::v1::Welcome& welcome, const Endpoint& server, bo
 }
 
 std::string other_page_host(const evod::v1::Welcome& welcome, const Endpoint& server) {
-    return welcome.page_host() == server.host ? "" : welcome.page_host();
+    const std::string& host = welcome.page_host();
+    return host == server.host || (is_this_machine(host) && is_this_machine(server.host)) ? "" : host;
 }
 
 std::string link_of(const std::string& page, const PageMoment& moment) {

@@ -210,7 +210,7 @@ void BackgroundQueries::on_done(runtime::ExportPartDone done) {
 void BackgroundQueries::ask_breeding(Session& session, const v1::Request& request, runtime::FoundRun run) {
     const std::string user = session.account();
     if (waiting_breedings_.count(user) >= breedings_waiting_max) {
-        limit_counters_.met(Limit::Breedings);
+        limit_counters_.met(Limit::RunningBreedings);
         return session.answer(protocol::refusing(
             request.request_id(),
             refusal(RefusalCode::ResourceExhausted,
@@ -259,7 +259,7 @@ void BackgroundQueries::take_back_breeding() {
         std::ranges::find_if(running_breedings_.rbegin(), running_breedings_.rend(), [&](const auto& item) {
             return item.second.breeding->user == user && !item.second.is_taken_back;
         });
-    limit_counters_.took_back(Limit::Breedings);
+    limit_counters_.took_back(Limit::RunningBreedings);
     breeding_quota_.give_back(user);
     last->second.is_taken_back = true;
     last->second.stop.request_stop();

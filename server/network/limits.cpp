@@ -92,7 +92,7 @@ constexpr LimitRow table[] = {
      shared},
     {Limit::ExportPatience, "export_patience_s", seconds(runtime::ExportJob::patience),
      "seconds from one part of an export until the client requests the next", "the server cancels the export"},
-    {Limit::Breedings, "breedings_max", breedings_max, "GetBreeding that run at once",
+    {Limit::RunningBreedings, "breedings_max", breedings_max, "GetBreeding that run at once",
      "further ones wait, and users are served in turn. Above 64 that wait for one user, the server refuses the request "
      "with "
      "`RESOURCE_EXHAUSTED`",

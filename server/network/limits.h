@@ -84,7 +84,7 @@ enum class Limit : std::uint8_t {
     Lease,
     Exports,
     ExportPatience,
-    Breedings,
+    RunningBreedings,
     WorldNameBytes,
     ClientKeyBytes,
     RetriesKept,

@@ -199,13 +199,14 @@ v1::Metrics Server::metrics() {
         .add(number(client_buffer_bytes_max));
     add_traffic(all, host_.traffic);
     add_limits(all, limit_counters_);
-    std::vector<std::pair<Limit, base::Quota>> pools{{Limit::Sessions, table_.places()},
-                                                     {Limit::Newcomers, table_.newcomers()},
-                                                     {Limit::MailboxCommands, simulations_.mailbox_places()},
-                                                     {Limit::Replays, dispatcher_.replay_places().quota()},
-                                                     {Limit::Exports, dispatcher_.background_queries().exports()},
-                                                     {Limit::Breedings, dispatcher_.background_queries().breedings()},
-                                                     {Limit::ClientKeys, dispatcher_.commands().cached_keys()}};
+    std::vector<std::pair<Limit, base::Quota>> pools{
+        {Limit::Sessions, table_.places()},
+        {Limit::Newcomers, table_.newcomers()},
+        {Limit::MailboxCommands, simulations_.mailbox_places()},
+        {Limit::Replays, dispatcher_.replay_places().quota()},
+        {Limit::Exports, dispatcher_.background_queries().exports()},
+        {Limit::RunningBreedings, dispatcher_.background_queries().breedings()},
+        {Limit::ClientKeys, dispatcher_.commands().cached_keys()}};
     if (http_) {
         pools.emplace_back(Limit::HttpConnections, http_->places());
     }

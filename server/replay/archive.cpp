@@ -136,7 +136,12 @@ void Archive::read_ended_answers(const std::vector<std::string>& ended, const st
     std::ranges::sort(runs, std::greater{}, [](const EndedRun& run) { return std::tie(run.when, run.path); });
     std::size_t bytes = 0;
     for (EndedRun& run : runs) {
-        const auto file = run_file::RunFile::open_read_only(run.path);
+        // Reading a damaged log would replace the index that shows the damage.
+        const auto file =
+            run.has_ended ? run_file::RunFile::open_read_only(run.path) : run_file::RunFile::open_checked(run.path);
+        if (!file && !run.has_ended) {
+            continue; // the reason is already logged
+        }
         if (!file) { // no world depends on this file
             log::warn(
                 "{} cannot be read, so commands that it contains may be applied again if a client repeats them: {}",

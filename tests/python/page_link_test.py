@@ -26,8 +26,8 @@ class Form(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, "at another host: 192.0.2.1"):
             page_link.warn_of_other_host(session_pb2.Welcome(page_port=7745, page_host="192.0.2.1"), Endpoint("lab"))
         with warnings.catch_warnings(record=True) as seen:
-            for host in "", "lab":
-                page_link.warn_of_other_host(session_pb2.Welcome(page_port=7745, page_host=host), Endpoint("lab"))
+            for host, server in ("", "lab"), ("lab", "lab"), ("127.0.0.1", "localhost"):
+                page_link.warn_of_other_host(session_pb2.Welcome(page_port=7745, page_host=host), Endpoint(server))
         self.assertEqual(seen, [])
 
     def test_names_of_the_server_cannot_leave_the_url(self):

@@ -28,8 +28,13 @@ def page_of(welcome: session_pb2.Welcome, server: Endpoint, tls: bool) -> str:
 
 def warn_of_other_host(welcome: session_pb2.Welcome, server: Endpoint) -> None:
     """Warns if the page is at another host than the server to which this client is connected."""
-    if welcome.page_host and welcome.page_host != server.host:
+    same = welcome.page_host == server.host or all(map(_is_this_machine, (welcome.page_host, server.host)))
+    if welcome.page_host and not same:
         warnings.warn(f"the server reports that its page is at another host: {welcome.page_host}", stacklevel=4)
+
+
+def _is_this_machine(host: str) -> bool:
+    return host in ("localhost", "::1") or re.fullmatch(r"127[.][0-9.]+", host) is not None
 
 
 def link_of(

@@ -32,6 +32,9 @@ TEST(PageLink, NamesOnlyHosts) {
 TEST(PageLink, SaysIfThePageIsAtAnotherHost) {
     EXPECT_EQ(other_page_host(welcome(7745), {.host = "lab"}), "");
     EXPECT_EQ(other_page_host(welcome(7745, "lab"), {.host = "lab"}), "");
+    EXPECT_EQ(other_page_host(welcome(7745, "127.0.0.1"), {.host = "localhost"}), "");
+    EXPECT_EQ(other_page_host(welcome(7745, "127.0.0.1"), {.host = "lab"}), "127.0.0.1");
+    EXPECT_EQ(other_page_host(welcome(7745, "127.example.org"), {.host = "localhost"}), "127.example.org");
     EXPECT_EQ(other_page_host(welcome(7745, "192.0.2.1"), {.host = "lab"}), "192.0.2.1");
 }
 

@@ -300,7 +300,7 @@ TEST_F(BackgroundQueriesTest, ABreedingThatLosesItsPlaceBeginsAgain) {
     for (const char* name : {"eve", "eve", "bob", "bob", "ada", "cid", "dan"}) {
         ask_breeding(connect_as(name), 1);
     }
-    EXPECT_EQ(counters.taken_back_count(Limit::Breedings), 2u) << "one of eve, one of bob";
+    EXPECT_EQ(counters.taken_back_count(Limit::RunningBreedings), 2u) << "one of eve, one of bob";
     for (const char* name : {"eve", "bob", "ada", "cid"}) {
         EXPECT_EQ(queries.breedings().held(name), 1u) << name;
     }
@@ -328,7 +328,7 @@ TEST_F(BackgroundQueriesTest, WaitingBreedingsOfAUserAreBounded) {
     const std::size_t answered = breedings_waiting_max + breedings_max / 2;
     ASSERT_EQ(third.responses.size(), asked - answered);
     EXPECT_EQ(third.responses[0].status().reason(), v1::REASON_SERVER_BUSY);
-    EXPECT_EQ(counters.count(Limit::Breedings), asked - answered);
+    EXPECT_EQ(counters.count(Limit::RunningBreedings), asked - answered);
     ask_breeding(connect_as("ada"), 1);
     EXPECT_EQ(queries.breedings().held("ada"), 1u) << "she is not concerned";
     holds_all.give_back();

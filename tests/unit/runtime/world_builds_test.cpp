@@ -58,6 +58,34 @@ class WorldBuildsTest : public testing::Test {
     std::optional<base::Result<BuiltWorld>> adopted;
 };
 
+TEST_F(WorldBuildsTest, TheBuildThreadServesUsersInTurn) {
+    std::vector<std::string> built;
+    std::promise<void> begun, go_on;
+    const auto begin = [&](
+                           const std::string& user, std::function<void()> first = [] {}) {
+        WorldBuilds::Order ordered = order([&built, user, first](base::Executor&) {
+            first();
+            built.push_back(user);
+            return small_world();
+        });
+        ordered.user = user;
+        builds.begin(std::move(ordered));
+    };
+    begin("eve", [&] {
+        begun.set_value();
+        go_on.get_future().wait();
+    });
+    begun.get_future().wait();
+    for (const char* user : {"eve", "eve", "eve", "ada"}) {
+        begin(user);
+    }
+    go_on.set_value();
+    while (builds.holds("")) {
+        take_mail();
+    }
+    EXPECT_EQ(built, (std::vector<std::string>{"eve", "eve", "ada", "eve", "eve"}));
+}
+
 TEST_F(WorldBuildsTest, SmallWorldsAreConstructedAtOnce) {
     std::thread::id thread;
     builds.begin(order(
