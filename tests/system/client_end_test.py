@@ -86,7 +86,7 @@ class ClientEnd(past.Case):
                     self.ends_during(client, request, lambda: over.send_raw(websocket_client.frame(
                         struct.pack(">H", 1000), websocket_client.CLOSE)) if end is None else end(over.connection))
 
-    def test_requests_without_an_end_do_not_keep_a_half_closed_session(self):
+    def test_a_half_closed_session_ends_unanswered(self):
         """More seeks than can end soon, each of another session, whose connections stay half open."""
         clients = [past.Client(self.served) for _ in range(20)]
         with contextlib.ExitStack() as stack:

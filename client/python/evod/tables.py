@@ -26,10 +26,11 @@ def read_csv(text: str, **options: Any) -> Any:
     Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats. Parents become
     whole numbers, <NA> for organisms without parents.
     """
-    kinds: dict[str, Any] = {name: str for name in ("sender", "user", "program", "address", "client_key", "kind", "request", "origin", "cause")}
+    kinds: dict[str, Any] = {name: str for name in ("sender", "kind", "request", "origin", "cause")}
     kinds |= {name: numpy.float32 for name in _genes_in(text)}
     kinds |= {f"parent_{which}{part}": "Int64" for which in ("first", "second") for part in ("", "_generation", "_island")}
-    return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds, **options)
+    chosen = {name: str for name in ("user", "program", "address")}  # text, also if it is empty or "NA"
+    return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds, converters=chosen, **options)
 
 
 def _genes_in(text: str) -> Sequence[str]:
