@@ -32,6 +32,7 @@ def reset(connection):
     connection.close()
 
 
+POOLS = ("sessions_max", "newcomers_max", "replays_max", "exports_max", "breedings_max")
 ENDS = {"FIN": fin, "close": close, "RST": reset}
 REQUESTS = {
     "seek": {"open_replay": c.OpenReplay(world="w", at=c.RunMoment(tick=FAR))},
@@ -56,7 +57,7 @@ class ClientEnd(past.Case):
         families = self.admin.call(get_metrics=c.GetMetrics()).metrics.families
         held = {sample.labels[0].value: sample.value for family in families if family.name == "evod_pool_held"
                 for sample in family.samples}
-        return {**held, "sessions_max": held["sessions_max"] - 1, "http_connections_max": 0}
+        return {pool: held[pool] - (pool == "sessions_max") for pool in POOLS}
 
     def ends_during(self, client, request, end):
         client.request_id += 1
