@@ -12,9 +12,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 namespace evod::base {
@@ -96,7 +96,7 @@ class FairQueue {
     }
 
     std::deque<Entry> items_; // in the order in which they were added
-    std::unordered_map<std::string, User> users_;
+    std::map<std::string, User> users_;
     std::uint64_t last_served_ = 0;
 };
 

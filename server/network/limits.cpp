@@ -126,7 +126,7 @@ constexpr LimitRow table[] = {
      "replays, incomplete frames",
      "the server closes the largest sessions of the user that uses the most memory; it "
      "does so, too, if a user uses more than half",
-     true},
+     shared},
     {Limit::QueuedResponseBytes, "queued_response_bytes_max", queued_response_bytes_max,
      "bytes of answers that a session has not read", "the server closes the session"},
     {Limit::QueuedEventBytes, "queued_event_bytes_max", queued_event_bytes_max,

@@ -394,7 +394,7 @@ class Requests(Case):
         with self.meets(client, "retries_kept"):
             client.call(PRECONDITION, client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
         first = client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1))
-        for i in range(limits.client_keys_max - 2):  # and "old"
+        for i in range(limits.client_keys_max // 2 - 2):  # and "old"; a user has half of the keys
             client.call(client_key=f"key {i}", request_id=1, pause=c.Pause(world="default"))
         self.assertEqual(client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1)), first)
         with self.meets(client, "client_keys_max"):

@@ -236,6 +236,7 @@ class Sessions(Case):
         few = self.serve_few()
         sockets += [self.session(few) for _ in range(3)]
         last = self.over(self.open(few), hello=False)
+        last.hello()
         self.assertEqual(last.goodbye().code, EXHAUSTED)
         self.assertEqual(last.socket.at_end(), POLICY)
 
