@@ -150,15 +150,15 @@ void add_server_options(Command& command, ServeOptions& options) {
         .check(port_number)
         .show_default();
     add_http_options(command, options);
-    const auto add_limit = [&](const char* name, std::uint32_t& count, const char* help) {
-        command.add_option(name, &count, help).check(WholeNumber{1, 1'000'000}).show_default();
+    const auto add_limit = [&](const char* name, std::uint32_t& count, std::uint64_t least, const char* help) {
+        command.add_option(name, &count, help).check(WholeNumber{least, 1'000'000}).show_default();
     };
     add_limit(
-        "--sessions-max", options.limits.sessions_max,
+        "--sessions-max", options.limits.sessions_max, 2,
         "Maximum number of simultaneous sessions, each of which uses one file descriptor; a user may have half of "
         "them, without a token an address");
-    add_limit("--worlds-max", options.limits.worlds_max, "Maximum number of worlds, without replays");
-    add_limit("--replays-max", options.limits.replays_max,
+    add_limit("--worlds-max", options.limits.worlds_max, 1, "Maximum number of worlds, without replays");
+    add_limit("--replays-max", options.limits.replays_max, 2,
               "Maximum number of simultaneous replays; a user may have half of them");
     command.option_group("Access and TLS");
     command.add_flag(

@@ -59,6 +59,14 @@ base::Refusal export_taken_back() {
 
 } // namespace
 
+BackgroundQueries::~BackgroundQueries() {
+    for (auto& [session, item] : exports_) {
+        if (item.job) {
+            item.job->cancel(export_not_wanted());
+        }
+    }
+}
+
 // ---- exports ---------------------------------------------------------------------------------------------------
 
 void BackgroundQueries::begin_export(Session& session, std::uint64_t request_id, const replay::StoredRun& run,

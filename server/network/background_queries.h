@@ -42,6 +42,9 @@ class BackgroundQueries {
         , limit_counters_{limit_counters}
         , export_patience_{export_patience} {}
 
+    /// Cancels everything, so that no job waits for its client while another one is awaited.
+    ~BackgroundQueries();
+
     /// Starts an export and answers the request with the first part. Cancels the session's previous export.
     void begin_export(Session& session, std::uint64_t request_id, const replay::StoredRun& run,
                       const replay::WantedTable& wanted);

@@ -61,7 +61,7 @@ void count_exceeded_limits(const v1::Request& request, LimitCounters& counters) 
 std::string account_of(const base::Actor& actor) {
     boost::system::error_code error;
     const auto address = asio::ip::make_address(actor.address.substr(0, actor.address.rfind(':')), error);
-    return !actor.user.empty() ? actor.user : error ? actor.address : address_key(address);
+    return network::account_of(actor.user, error ? actor.address : address_key(address));
 }
 
 UserKey key_of(const run_file::Origin& origin) {

@@ -321,7 +321,9 @@ void Dispatcher::serve_replay(Session& session, const v1::Request& request) {
         }
     }
     if (!simulations_.try_send(replay_mail(request, session))) {
-        replay_places_.give_back(session.number(), id);
+        if (request.has_open_replay()) {
+            replay_places_.give_back(session.number(), id);
+        }
         session.answer(protocol::refusing(id, mailbox_full(host_.limit_counters)));
     }
 }
@@ -329,15 +331,15 @@ void Dispatcher::serve_replay(Session& session, const v1::Request& request) {
 void Dispatcher::end_replay(const ReplayPlaces::Place& place) {
     host_.limit_counters.took_back(Limit::Replays);
     simulations_.end_replay({.session = place.session, .request_id = place.request_id, .name = place.name});
-    if (place.name.empty()) {
-        return; // its request will be refused
-    }
     if (const SessionPtr session = find_session(sessions_, place.session)) {
         session->replays.erase(place.name);
     }
-    streams_.forget_world(place.name);
+}
+
+void Dispatcher::on_done(const runtime::ReplayEnded& ended) {
+    streams_.forget_world(ended.name);
     v1::Event event;
-    event.set_world(place.name);
+    event.set_world(ended.name);
     *event.mutable_world_deleted()->mutable_by() = protocol::actor_of_kind(v1::ACTOR_KIND_SERVER);
     streams_.publish(std::move(event));
 }

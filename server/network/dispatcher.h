@@ -64,6 +64,7 @@ class Dispatcher {
     void on_done(runtime::ReplayDone done);
     void on_done(runtime::RunFound done);
     void on_done(const runtime::ReplayMemory& memory);
+    void on_done(const runtime::ReplayEnded& ended);
     void on_storage(const runtime::StorageChanged& changed);
     /// Ends the lease and the snapshot streams of a world that has become damaged, and publishes the event.
     void on_damaged(const simulation::DamagedWorld& damaged);
@@ -75,7 +76,7 @@ class Dispatcher {
     void find_run(Session& session, v1::Request request);
     /// Handles a request of the kind REQUEST_KIND_REPLAY.
     void serve_replay(Session& session, const v1::Request& request);
-    /// Closes a replay that has lost its place, and reports it to its session.
+    /// Closes a replay that has lost its place.
     void end_replay(const ReplayPlaces::Place& place);
 
     runtime::Simulations& simulations_;

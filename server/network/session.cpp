@@ -26,6 +26,10 @@ SessionPtr find_session(const Sessions& sessions, std::uint64_t number) {
     return found == sessions.end() ? nullptr : found->second;
 }
 
+std::string account_of(const std::string& user, const std::string& address_prefix) {
+    return user.empty() ? "@" + address_prefix : user; // no token's name contains an @
+}
+
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     : Session{std::make_unique<Transport>(std::move(socket), host.tls), host, number} {}
 
@@ -37,7 +41,7 @@ Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::u
     , number_{number}
     , peer_{transport_->peer()}
     , address_prefix_{address_key(peer_.address())}
-    , account_{address_prefix_}
+    , account_{account_of({}, address_prefix_)}
     , deadline_timer_{transport_->socket().get_executor()}
     , reader_bytes_{host.send_memory}
     , subscription_bytes_{host.send_memory}
@@ -360,7 +364,7 @@ void Session::on_hello(const v1::Hello& hello) {
     if (!visitor) {
         return fail(visitor.error());
     }
-    const std::string& account = visitor->name.empty() ? address_prefix_ : visitor->name;
+    const std::string account = account_of(visitor->name, address_prefix_);
     if (const auto refused = host_.make_room(account)) {
         return fail(*refused);
     }

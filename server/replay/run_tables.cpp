@@ -318,14 +318,19 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
 
 Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format format, bool only_users) {
     constexpr std::uint32_t entries_at_once = 1000;
+    constexpr std::size_t bytes_at_once = 256 << 10; // they stay in memory while the job waits for its client
     google::protobuf::util::JsonPrintOptions json_options;
     json_options.preserve_proto_field_names = true;
     Table table{out, format, {"number", "tick", "sender", "user", "program", "address", "kind", "request"}};
-    for (std::uint64_t first = 1; out; first += entries_at_once) {
-        const auto entries = run.file.journal().read(first, entries_at_once);
+    for (std::uint64_t first = 1; out;) {
+        const auto entries = run.file.journal().read(first, entries_at_once, bytes_at_once);
         if (!entries) {
             return entries.error();
         }
+        if (entries->empty()) {
+            break;
+        }
+        first += entries->size();
         for (const run_file::JournalEntry& entry : *entries) {
             if (!out) {
                 return {};
@@ -352,9 +357,6 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
                 .text(kind_of(request))
                 .json(json)
                 .end_row();
-        }
-        if (entries->size() < entries_at_once) {
-            break;
         }
     }
     return {};

@@ -7,7 +7,7 @@
 
 namespace evod::run_file {
 
-base::Result<std::vector<JournalEntry>> Journal::read(std::uint64_t first, std::uint32_t count) {
+base::Result<std::vector<JournalEntry>> Journal::read(std::uint64_t first, std::uint32_t count, std::size_t bytes_max) {
     if (first == 1) {
         if (auto sound = check_tree(database_, JournalTable::name); !sound) {
             return sound.error();
@@ -17,11 +17,13 @@ base::Result<std::vector<JournalEntry>> Journal::read(std::uint64_t first, std::
     TableReader<JournalTable> reader{
         database_.database, "number >= ? ORDER BY number LIMIT ?", {static_cast<std::int64_t>(first), count}};
     JournalEntry entry;
-    while (reader.next(entry)) {
+    std::size_t bytes = 0;
+    while (bytes <= bytes_max && reader.next(entry)) {
         const std::uint64_t expected = first + entries.size();
         if (!reader.sound() || entry.number != expected) {
             return database_.damaged(row_text(JournalTable::name, expected));
         }
+        bytes += entry.origin.request.size() + entry.answer.size();
         entries.push_back(std::move(entry));
     }
     return database_.unless_failed(std::move(entries));

@@ -17,10 +17,12 @@ class Journal {
   public:
     explicit Journal(RunDatabase& database) : database_{database} {}
 
-    /// Reads at most `count` entries, beginning with entry number `first`. DATA_LOSS names a damaged or missing entry.
+    /// Reads at most `count` entries, beginning with entry number `first`, and none after those that have more than
+    /// `bytes_max` bytes together. DATA_LOSS names a damaged or missing entry.
     /// If `first` is 1, SQLite checks the whole table beforehand, because no other row shows that the last entries are
     /// missing.
-    base::Result<std::vector<JournalEntry>> read(std::uint64_t first = 1, std::uint32_t count = ~0u);
+    base::Result<std::vector<JournalEntry>> read(std::uint64_t first = 1, std::uint32_t count = ~0u,
+                                                 std::size_t bytes_max = ~std::size_t{0});
     /// Number of the newest entry; 0 if there is none.
     std::uint64_t last_number() { return database_.natural("SELECT max(number) FROM journal"); }
     /// The client keys of the commands up to entry number `last`, in the order of their last use. Beyond `keys_max`, the

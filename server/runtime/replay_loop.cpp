@@ -154,10 +154,11 @@ bool ReplayLoop::close(const ReplayMail& mail, const CloseReplay& request) {
     if (owner == nullptr || owner->session == 0) {
         return false;
     }
+    const std::uint64_t session = owner->session;
     shown_.close(request.world);
     seeks_.cancel_of_replay(request.world);
     outputs_.reply(ReplayDone{mail, request.world});
-    report_memory(mail.session);
+    report_memory(session);
     return true;
 }
 
@@ -169,6 +170,7 @@ void ReplayLoop::end(const EndReplay& mail) {
         shown_.close(mail.name);
         seeks_.cancel_of_replay(mail.name);
         report_memory(session);
+        outputs_.reply(ReplayEnded{mail.name});
     }
 }
 
@@ -233,7 +235,7 @@ void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const 
     } else {
         shown_.move_to(name, *std::move(result));
     }
-    report_memory(mail.session);
+    report_memory(shown_.owner_of(name)->session); // another session may have moved it
     const simulation::Entry& entry = **laboratory_.find(name);
     outputs_.reply(ReplayDone{mail, name, protocol::to_proto(entry)});
     if (!moved.empty()) {
@@ -248,9 +250,16 @@ void ReplayLoop::report_memory(std::uint64_t session) {
         return;
     }
     const std::size_t bytes = seeks_.held_bytes(session) + shown_.held_bytes(session);
-    if (std::exchange(reported_bytes_[session], bytes) != bytes) {
-        outputs_.reply(ReplayMemory{.session = session, .bytes = bytes});
+    const auto reported = reported_bytes_.find(session);
+    if (bytes == (reported == reported_bytes_.end() ? 0 : reported->second)) {
+        return;
     }
+    if (bytes == 0) {
+        reported_bytes_.erase(reported); // also if the session has ended
+    } else {
+        reported_bytes_[session] = bytes;
+    }
+    outputs_.reply(ReplayMemory{.session = session, .bytes = bytes});
 }
 
 void ReplayLoop::forget(std::uint64_t session) {

@@ -59,6 +59,11 @@ struct ReplayMemory {
     std::size_t bytes = 0;
 };
 
+/// A replay that has lost its place is closed. No snapshot or event of it follows.
+struct ReplayEnded {
+    std::string name;
+};
+
 /// Why a replay was closed, or is not opened, for another user.
 base::Refusal replay_taken_back();
 
@@ -103,10 +108,10 @@ struct BreedingDone {
 CommandDone refused(CommandDone done, base::Refusal why);
 
 /// What the network thread answers.
-using Answer =
-    std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, RunFound, Pong, ExportPartDone, BreedingDone>;
+using Answer = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, ReplayEnded, RunFound, Pong,
+                            ExportPartDone, BreedingDone>;
 /// What the outbox contains. WorldBrought is on its way to the thread of the live worlds (simulations.h).
-using Reply = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, RunFound, Pong, ExportPartDone,
-                           BreedingDone, WorldBrought, recording::Receipt>;
+using Reply = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, ReplayEnded, RunFound, Pong,
+                           ExportPartDone, BreedingDone, WorldBrought, recording::Receipt>;
 
 } // namespace evod::runtime

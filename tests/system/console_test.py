@@ -165,7 +165,7 @@ class Options(Folder):
 
     def test_an_invalid_number_is_reported_with_its_range(self):
         for words, least, most in ((["--port"], 0, 65535), (["--http-port"], 0, 65535), (["--threads"], 1, 1024),
-                                   (["--sessions-max"], 1, 1000000), (["--seed"], 0, 2**64 - 1),
+                                   (["--sessions-max"], 2, 1000000), (["--worlds-max"], 1, 1000000), (["--seed"], 0, 2**64 - 1),
                                    (["--keep-every"], 1, 10**9), (["--file-bytes-max"], 2**20, 2**50),
                                    (["run", "--generations"], 0, 2**32 - 1), (["run", "--threads"], 1, 1024),
                                    (["replay", "x", "--generation"], 1, 2**64 - 1),

@@ -165,6 +165,26 @@ class Attacks(access.Access):
         client.socket.close()
         plain.until(lambda: self.counted_mib(admin) < counted + 1, "none is counted")
 
+    def test_the_opener_of_a_replay_is_charged(self):
+        """Also if another session moves or closes it."""
+        server, admin = self.begin()
+        admin.call(create_world=c.CreateWorld(name="large", seed=1, parameters=plain.assignments(
+            population_size=50_000, scale_with_population=True)))
+        admin.call(run_until_tick=c.RunUntilTick(world="large", tick=3))
+        admin.wait_world(lambda world: world.tick >= 3, "large")
+        counted = self.counted_mib(admin)
+        client = self.come(server, self.secrets["eve"])
+        replay = client.call(open_replay=c.OpenReplay(world="large")).world.name
+        plain.until(lambda: self.counted_mib(admin) > counted + 5, "it is counted")
+        held = self.counted_mib(admin)
+        other = self.come(server, self.secrets["ada"])
+        other.call(seek=c.Seek(world=replay, to=c.RunMoment(tick=2)))
+        other.socket.close()
+        plain.until(lambda: self.counted_mib(admin) < held + 1, "the session that moved it is not charged")
+        self.assertGreater(self.counted_mib(admin), counted + 5)
+        admin.call(close_replay=c.CloseReplay(world=replay))
+        plain.until(lambda: self.counted_mib(admin) < counted + 1, "it is not counted any more")
+
     def test_waiting_queries_evict_no_session(self):
         server, admin = self.begin()
         admin.call(create_world=c.CreateWorld(name="w", seed=1, parameters=plain.assignments(

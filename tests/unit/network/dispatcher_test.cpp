@@ -303,6 +303,8 @@ TEST_F(DispatcherTest, AReplayIsTakenBackFromTheUserWithTheMost) {
     open("ada");
     open("ada");
     EXPECT_EQ(of["ada"]->responses.size(), 2u);
+    EXPECT_TRUE(of["bob"]->events.empty()) << "events of the replay may be on their way";
+    deliver(runtime::ReplayEnded{"w@4"});
     EXPECT_FALSE(of["ada"]->responses.at(0).has_status());
     EXPECT_EQ(of["ada"]->responses.at(1).status().reason(), v1::REASON_REPLAYS_MAX) << "eve has 2 left, ada 1";
     ASSERT_EQ(of["bob"]->events.size(), 1u);
