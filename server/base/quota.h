@@ -20,7 +20,7 @@ class Quota {
 
     enum class Verdict {
         Free,        // the user may take the amount
-        FromLargest, // nothing is free: the holder() of the most must lose something first
+        FromLargest, // nothing is free: the user largest() must lose something first
         UserFull,    // the user holds, or would hold, more than half of the pool
         PoolFull,    // nothing is free, and no other user holds clearly more
     };

@@ -3,6 +3,7 @@
 #include "proto/codec/framing.h"
 #include "proto/codec/tiles.h"
 #include "server/base/assert.h"
+#include "server/base/quota.h"
 #include "server/protocol/breeding.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
@@ -94,8 +95,7 @@ constexpr LimitRow table[] = {
      "seconds from one part of an export until the client requests the next", "the server cancels the export"},
     {Limit::RunningBreedings, "breedings_max", breedings_max, "GetBreeding that run at once",
      "further ones wait, and users are served in turn. Above 64 that wait for one user, the server refuses the request "
-     "with "
-     "`RESOURCE_EXHAUSTED`",
+     "with `RESOURCE_EXHAUSTED`",
      shared},
     {Limit::WorldNameBytes, "world_name_bytes_max", simulation::world_name_bytes_max,
      "bytes in the name of a new world", "the server refuses the request with `INVALID_ARGUMENT`"},
@@ -139,10 +139,8 @@ constexpr LimitRow table[] = {
     {Limit::HttpConnections, "http_connections_max", http_connections_max,
      "open HTTP connections; a WebSocket counts as a session instead",
      "the server closes the oldest connection that waits for a request, of the same address if it holds half, "
-     "otherwise "
-     "of the address with the most. If none waits, it closes the oldest connection of an address that has clearly "
-     "more, "
-     "or answers the new one with `503`; from twice as many connections it closes new ones at once",
+     "otherwise of the address with the most. If none waits, it closes the oldest connection of an address that has "
+     "clearly more, or answers the new one with `503`; from twice as many connections it closes new ones at once",
      shared},
     {Limit::HttpHeaderBytes, "http_header_bytes_max", http_header_bytes_max, "bytes in the header of an HTTP request",
      "the server answers with `431` and closes the connection"},
@@ -162,8 +160,8 @@ std::string limit_list() {
         "| name | default | of one user | what is limited | when the limit is reached |\n|---|---|---|---|---|\n";
     for (const LimitRow& row : table) {
         text += "| `" + std::string{row.name} + "` | " + std::to_string(row.value) + " | " +
-                (row.is_shared ? std::to_string((row.value + 1) / 2) : "") + " | " + std::string{row.limited} + " | " +
-                std::string{row.effect} + " |\n";
+                (row.is_shared ? std::to_string(base::Quota{row.value}.share()) : "") + " | " +
+                std::string{row.limited} + " | " + std::string{row.effect} + " |\n";
     }
     return text;
 }

@@ -15,6 +15,17 @@ base::Refusal to_make_room(const char* why) {
     return refusal(base::RefusalCode::ResourceExhausted, why, base::Reason::SessionsMax);
 }
 
+/// What the accounts hold of a pool of so many places. Counts the sessions with a Hello, or those without one.
+base::Quota held_by(const Sessions& sessions, bool greeted, std::size_t total) {
+    base::Quota held{total};
+    for (const auto& [number, session] : sessions) {
+        if (session->greeted() == greeted && !session->is_over()) {
+            held.take(session->account());
+        }
+    }
+    return held;
+}
+
 } // namespace
 
 void SessionTable::accept(std::unique_ptr<Transport> transport) {
@@ -76,23 +87,11 @@ std::optional<base::Refusal> SessionTable::make_room(const std::string& account)
 }
 
 base::Quota SessionTable::places() const {
-    base::Quota held{sessions_max_};
-    for (const auto& [number, session] : sessions_) {
-        if (session->greeted() && !session->is_over()) {
-            held.take(session->account());
-        }
-    }
-    return held;
+    return held_by(sessions_, true, sessions_max_);
 }
 
 base::Quota SessionTable::newcomers() const {
-    base::Quota held{newcomers_max};
-    for (const auto& [number, session] : sessions_) {
-        if (!session->greeted() && !session->is_over()) {
-            held.take(session->account());
-        }
-    }
-    return held;
+    return held_by(sessions_, false, newcomers_max);
 }
 
 void SessionTable::forget(const Session& session) {

@@ -5,25 +5,23 @@
 namespace evod::runtime {
 
 bool Mailbox::try_push(Mail&& mail, const std::string& user) {
-    {
-        const std::lock_guard lock{mutex_};
-        if (places_.ask(user) != base::Quota::Verdict::Free) {
-            return false;
-        }
-        places_.take(user);
-        waiting_.push_back(std::move(mail));
-        pending_.store(true, std::memory_order_release);
+    std::unique_lock lock{mutex_};
+    if (places_.ask(user) != base::Quota::Verdict::Free) {
+        return false;
     }
-    changed_.notify_one();
+    places_.take(user);
+    add(std::move(mail), std::move(lock));
     return true;
 }
 
 void Mailbox::push(Mail&& mail) {
-    {
-        const std::lock_guard lock{mutex_};
-        waiting_.push_back(std::move(mail));
-        pending_.store(true, std::memory_order_release);
-    }
+    add(std::move(mail), std::unique_lock{mutex_});
+}
+
+void Mailbox::add(Mail&& mail, std::unique_lock<std::mutex> lock) {
+    waiting_.push_back(std::move(mail));
+    pending_.store(true, std::memory_order_release);
+    lock.unlock();
     changed_.notify_one();
 }
 

@@ -46,6 +46,8 @@ class Mailbox {
     void wait(std::optional<Clock::time_point> until);
 
   private:
+    void add(Mail&& mail, std::unique_lock<std::mutex> lock);
+
     std::atomic<bool> pending_ = false;
     mutable std::mutex mutex_; // guards the members below
     std::condition_variable changed_;

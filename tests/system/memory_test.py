@@ -146,12 +146,17 @@ class Attacks(access.Access):
         rss, counted = self.observe(server, admin)
         self.check("groups of a single session", before, rss, counted, admin.welcome.limits.client_buffer_bytes_max)
 
-    def test_replays(self):
+    def begin_large(self):
+        """As begin(), with a world of 50,000 organisms that has run for three ticks."""
         server, admin = self.begin()
         admin.call(create_world=c.CreateWorld(name="large", seed=1, parameters=plain.assignments(
             population_size=50_000, scale_with_population=True)))
         admin.call(run_until_tick=c.RunUntilTick(world="large", tick=3))
         admin.wait_world(lambda world: world.tick >= 3, "large")
+        return server, admin
+
+    def test_replays(self):
+        server, admin = self.begin_large()
         before, counted = rss_mib(server), self.counted_mib(admin)
         client = self.come(server, self.secrets["eve"])
         for _ in range(4):
@@ -167,11 +172,7 @@ class Attacks(access.Access):
 
     def test_the_opener_of_a_replay_is_charged(self):
         """Also if another session moves or closes it."""
-        server, admin = self.begin()
-        admin.call(create_world=c.CreateWorld(name="large", seed=1, parameters=plain.assignments(
-            population_size=50_000, scale_with_population=True)))
-        admin.call(run_until_tick=c.RunUntilTick(world="large", tick=3))
-        admin.wait_world(lambda world: world.tick >= 3, "large")
+        server, admin = self.begin_large()
         counted = self.counted_mib(admin)
         client = self.come(server, self.secrets["eve"])
         replay = client.call(open_replay=c.OpenReplay(world="large")).world.name
