@@ -180,7 +180,7 @@ class ProgramFailed(Error, RuntimeError):
     """The program evod did not start, or failed. The message contains its own message."""
 
 
-_OF_CODE = {
+_OF_CODE: dict[int, type[Error]] = {
     kind._code: kind
     for kind in (InvalidArgument, NotFound, AlreadyExists, PermissionDenied, ResourceExhausted, FailedPrecondition, Aborted,
                  Unimplemented, Unavailable, Unauthenticated, DamagedData)
