@@ -1,6 +1,7 @@
-// Layering: which folders include which, read from the #include lines, and what the core may not use.
+// Layering: which folders include which, read from the #include and import lines, and what the core may not use.
 //
-// Covered      every .h and .cpp below server/, client/, proto/ and tests/: includes of this project. The core,
+// Covered      every .h and .cpp below server/, client/, proto/ and tests/, and every .ts of the browser page: includes and
+//              imports of this project. The core,
 //              server/{base, physics, evolution, parameters, simulation, simulation/shared}: headers and calls that would make a run
 //              depend on time, disk, threads, a device or the last bits of the C library. server/{protocol, run_file,
 //              recording, replay}: sockets. What threads exchange: closures. All: MPI.
@@ -33,7 +34,7 @@ struct Source {
     std::string code;                         // without comments
 };
 
-/// The folders of server/ and client/viewer/ in the order in which ARCHITECTURE.md prints them, from top to bottom.
+/// The folders of server/, client/viewer/ and client/web/src/ in the order in which ARCHITECTURE.md prints them, from top to bottom.
 ///
 /// In its code blocks, a line such as `server/` or `client/viewer/shell/  …` begins a tree, and an indented line such as
 /// `   runtime/  …` is a folder of that tree. A folder may include only folders of its tree that are printed below it. A
@@ -55,10 +56,12 @@ const std::vector<std::string>& printed_folders() {
                 continue;
             } else if (std::regex_match(line, match, top)) {
                 const std::string path = match[1];
-                const bool viewer = path.starts_with("client/viewer/") && path.size() > 14;
-                tree = viewer ? "client/viewer/" : path == "server/" ? path : "";
-                if (viewer) {
-                    folders.push_back(path.substr(0, path.size() - 1));
+                tree = path == "server/" ? path : "";
+                for (const std::string client : {"client/viewer/", "client/web/src/"}) {
+                    if (path.starts_with(client) && path != client) {
+                        tree = client;
+                        folders.push_back(path.substr(0, path.size() - 1));
+                    }
                 }
             } else if (!tree.empty() && std::regex_match(line, match, inner)) {
                 folders.push_back(tree + match[1].str());
@@ -280,6 +283,49 @@ TEST(Layering, IncludesFormNoCircle) {
     }
     EXPECT_GT(arrows.size(), 15u);
     EXPECT_EQ(circle_in(arrows), "");
+}
+
+/// The sources of the browser page, and the sources that each of them imports, as paths below client/web/src/ without ".ts".
+Arrows imports_of_page() {
+    static const std::regex import{R"x((?:from|import)\s*\(?\s*"(\.[^"]+)")x"};
+    const fs::path page = root / "client/web/src";
+    Arrows arrows;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator{page}) {
+        if (entry.path().extension() != ".ts" || entry.path().stem().extension() == ".d") {
+            continue;
+        }
+        std::ifstream file{entry.path()};
+        std::stringstream text;
+        text << file.rdbuf();
+        const std::string code = text.str();
+        std::set<std::string>& targets = arrows[fs::relative(entry.path(), page).replace_extension().generic_string()];
+        for (std::sregex_iterator at{code.begin(), code.end(), import}, end; at != end; ++at) {
+            const fs::path target = (entry.path().parent_path() / (*at)[1].str()).lexically_normal();
+            if (const std::string path = target.lexically_relative(page).generic_string(); !path.starts_with("..")) {
+                targets.insert(path); // files outside, such as experiments, are data
+            }
+        }
+    }
+    return arrows;
+}
+
+TEST(Layering, ThePageImportsOnlyDownwards) {
+    const std::set<std::string> of_worker{"client/web/src/render", "client/web/src/texts", "client/web/src/core"};
+    const Arrows arrows = imports_of_page();
+    EXPECT_GT(arrows.size(), 80u);
+    for (const auto& [source, targets] : arrows) {
+        const std::string folder = folder_of("client/web/src/" + source);
+        EXPECT_TRUE(!folder.empty() || source == "worker") << source << ": ARCHITECTURE.md does not print its folder";
+        for (const std::string& path : targets) {
+            const std::string target = folder_of("client/web/src/" + path);
+            EXPECT_TRUE(folder.empty() ? of_worker.contains(target) : target == folder || is_below(target, folder))
+                << source << " imports " << path;
+        }
+    }
+}
+
+TEST(Layering, ThePagesImportsFormNoCircle) {
+    EXPECT_EQ(circle_in(imports_of_page()), "");
 }
 
 /// The sources below server/ that a source includes, also through others, each with the one that includes it.

@@ -3,18 +3,16 @@
 interface OffscreenCanvas extends EventTarget {
   width: number;
   height: number;
-  getContext(kind: "webgl2", options?: WebGLContextAttributes): WebGL2RenderingContext | null;
-  getContext(kind: "2d", options?: CanvasRenderingContext2DSettings): OffscreenCanvasRenderingContext2D | null;
+  getContext(kind: "webgl2", options?: WebGLContextAttributes): WebGL2RenderingContext|null;
+  getContext(kind: "2d", options?: CanvasRenderingContext2DSettings): OffscreenCanvasRenderingContext2D|null;
 }
 
-declare var OffscreenCanvas: {
-  prototype: OffscreenCanvas;
-  new (width: number, height: number): OffscreenCanvas;
-};
+declare var OffscreenCanvas: {prototype: OffscreenCanvas; new (width: number, height: number): OffscreenCanvas;};
 
-interface OffscreenCanvasRenderingContext2D
-  extends CanvasCompositing, CanvasDrawImage, CanvasDrawPath, CanvasFillStrokeStyles, CanvasImageData, CanvasPath, CanvasPathDrawingStyles,
-    CanvasRect, CanvasState, CanvasText, CanvasTextDrawingStyles, CanvasTransform {
+interface OffscreenCanvasRenderingContext2D extends CanvasCompositing, CanvasDrawImage, CanvasDrawPath,
+                                                    CanvasFillStrokeStyles, CanvasImageData, CanvasPath,
+                                                    CanvasPathDrawingStyles, CanvasRect, CanvasState, CanvasText,
+                                                    CanvasTextDrawingStyles, CanvasTransform {
   readonly canvas: OffscreenCanvas;
 }
 

@@ -5,12 +5,12 @@
 //                hidden_max_ms the worker ends its subscriptions to snapshots until the page is visible again.
 // Reconnecting   While the connection is lost, the worker tries again after 0.25 s, then after twice as long, up to 5 s. The
 //                core then subscribes again and repeats the unanswered requests.
-import { ClientCore, type CoreEvent, is_name_of_replay, type Subscription } from "./core/client_core";
-import { InvalidMessage } from "./core/errors";
-import { EventQueue } from "./core/event_queue";
-import type { Snapshot } from "./core/snapshot";
-import type { Camera, FromWorker, Look, Message, ToWorker } from "./messages";
-import { Renderer } from "./render/renderer";
+import {ClientCore, type CoreEvent, is_name_of_replay, type Subscription} from "./core/client_core";
+import {InvalidMessage} from "./core/errors";
+import {EventQueue} from "./core/event_queue";
+import type {Snapshot} from "./core/snapshot";
+import type {Camera, FromWorker, Look, Message, ToWorker} from "./core/messages";
+import {Renderer} from "./render/renderer";
 
 const client_name = "browser";
 const unacknowledged_max = 2;
@@ -31,19 +31,20 @@ const timings_kept = 200;
 
 const scope = self as unknown as {
   postMessage(message: FromWorker): void;
-  onmessage: ((event: MessageEvent<ToWorker>) => void) | null;
+  onmessage: ((event: MessageEvent<ToWorker>) => void)|null;
   requestAnimationFrame?: (callback: () => void) => number;
   cancelAnimationFrame?: (request: number) => void;
 };
 
 interface Pane {
-  renderer: Renderer | null; // null until the canvas has arrived
-  watched: { world: string; island: number; rate_hz: number } | null;
-  subscription: Subscription | null;
+  renderer: Renderer|null; // null until the canvas has arrived
+  watched: {world: string; island: number; rate_hz: number}|null;
+  subscription: Subscription|null;
   has_view: boolean; // the subscription is limited to a view
-  overview: Subscription | null; // densities of the whole island once a second, for the minimap, while the pane has a view
+  overview: Subscription|
+    null; // densities of the whole island once a second, for the minimap, while the pane has a view
   drawn_next: Snapshot[]; // added to the renderer, not acknowledged yet
-  newest: Snapshot | null;
+  newest: Snapshot|null;
   follow: boolean;
   camera: string; // the camera that the page knows, as text
   drawing: string; // the last reported Drawing, as text
@@ -56,13 +57,13 @@ interface Pane {
 /** What the page has set for a pane before its canvas has arrived. */
 interface Settings {
   size?: [number, number, number];
-  camera?: Camera | null;
+  camera?: Camera|null;
   look?: Look;
 }
 
-let core: ClientCore | null = null;
-let socket: WebSocket | null = null;
-let connect: { url: string; token: string; descriptor: Uint8Array } | null = null;
+let core: ClientCore|null = null;
+let socket: WebSocket|null = null;
+let connect: {url: string; token: string; descriptor: Uint8Array}|null = null;
 let connecting = 0; // timer of the next attempt
 let backoff_ms = backoff_min_ms;
 let received_ms = 0; // when the last bytes arrived
@@ -86,10 +87,10 @@ function host(): string {
 
 function begin(url: string, token: string, descriptor: ArrayBuffer): void {
   end_session();
-  connect = { url, token, descriptor: new Uint8Array(descriptor) };
-  core = new ClientCore(connect.descriptor, { client_name, client_version: "", token, server: host() });
-  scope.postMessage({ kind: "rules", rules: core.schema.request_rules(), roles: core.schema.enum_names("evod.v1.Role") });
-  core.subscribe({ subscribe_events: {} });
+  connect = {url, token, descriptor: new Uint8Array(descriptor)};
+  core = new ClientCore(connect.descriptor, {client_name, client_version: "", token, server: host()});
+  scope.postMessage({kind: "rules", rules: core.schema.request_rules(), roles: core.schema.enum_names("evod.v1.Role")});
+  core.subscribe({subscribe_events: {}});
   for (const [number, pane] of panes) {
     pane.subscription = pane.overview = null;
     if (pane.watched && is_name_of_replay(pane.watched.world)) {
@@ -163,7 +164,7 @@ function lose(message: string, code: string): void {
   socket = null;
   ended?.close();
   const failed = core!.failed;
-  const events = core!.lost({ message, code });
+  const events = core!.lost({message, code});
   post_state(failed ? "refused" : "lost", failed?.message ?? message, failed?.code ?? code);
   take(events); // the page knows why its requests fail
   if (!failed) {
@@ -185,21 +186,21 @@ function watch_silence(): void {
     lose(`the server at ${host()} has sent nothing for ${Math.round(silent_ms / 1000)} s`, "");
   } else if (!queried) {
     queried = true;
-    core.request({ list_worlds: {} }, true);
+    core.request({list_worlds: {}}, true);
     flush();
   }
 }
 
-function post_state(phase: "open" | "lost" | "refused", message: string, code: string): void {
+function post_state(phase: "open"|"lost"|"refused", message: string, code: string): void {
   const sentence = message.charAt(0).toUpperCase() + message.slice(1);
-  scope.postMessage({ kind: "state", state: { phase, message: sentence, code, welcome: core?.welcome ?? null } });
+  scope.postMessage({kind: "state", state: {phase, message: sentence, code, welcome: core?.welcome ?? null}});
 }
 
 /** Sends the queued events unless the page has not taken the last ones. */
 function send_events(): void {
   if (!events_sent && !event_queue.is_empty) {
     events_sent = true;
-    scope.postMessage({ kind: "events", events: event_queue.take() });
+    scope.postMessage({kind: "events", events: event_queue.take()});
   }
 }
 
@@ -216,7 +217,7 @@ function take(events: CoreEvent[]): void {
         const id = ids.get(event.id);
         ids.delete(event.id);
         if (id !== undefined) {
-          scope.postMessage({ kind: "response", id, response: event.response });
+          scope.postMessage({kind: "response", id, response: event.response});
         }
         break;
       }
@@ -224,7 +225,7 @@ function take(events: CoreEvent[]): void {
         const id = ids.get(event.id);
         ids.delete(event.id);
         if (id !== undefined) {
-          scope.postMessage({ kind: "failed", id, message: event.message });
+          scope.postMessage({kind: "failed", id, message: event.message});
         }
         break;
       }
@@ -242,7 +243,11 @@ function take(events: CoreEvent[]): void {
         of_subscription(event.subscription, (number, pane) => {
           core!.unsubscribe(event.subscription);
           pane.subscription = null;
-          scope.postMessage({ kind: "watch_refused", pane: number, message: event.status.message ?? "The server refuses to send snapshots" });
+          scope.postMessage({
+            kind: "watch_refused",
+            pane: number,
+            message: event.status.message ?? "The server refuses to send snapshots"
+          });
         });
         break;
       case "close":
@@ -276,7 +281,8 @@ function take_snapshot(subscription: Subscription, snapshot: Snapshot): void {
     pane.fresh = true;
     pane.drawn_next.push(snapshot);
     pane.renderer?.add(snapshot, performance.now());
-    const organisms = snapshot.info.counts.organisms, view = organisms >= view_from || (pane.has_view && organisms >= whole_below);
+    const organisms = snapshot.info.counts.organisms,
+          view = organisms >= view_from || (pane.has_view && organisms >= whole_below);
     if (view !== pane.has_view) {
       pane.has_view = view;
       watch(number, pane);
@@ -293,8 +299,22 @@ function take_snapshot(subscription: Subscription, snapshot: Snapshot): void {
 function pane_of(number: number): Pane {
   let pane = panes.get(number);
   if (!pane) {
-    pane = { renderer: null, watched: null, subscription: null, has_view: false, overview: null, drawn_next: [], newest: null, follow: false, camera: "", drawing: "",
-             fresh: false, reported_ms: 0, drawing_reported_ms: 0, view_ms: 0 };
+    pane = {
+      renderer: null,
+      watched: null,
+      subscription: null,
+      has_view: false,
+      overview: null,
+      drawn_next: [],
+      newest: null,
+      follow: false,
+      camera: "",
+      drawing: "",
+      fresh: false,
+      reported_ms: 0,
+      drawing_reported_ms: 0,
+      view_ms: 0
+    };
     panes.set(number, pane);
   }
   return pane;
@@ -312,12 +332,18 @@ function watch(_number: number, pane: Pane): void {
   if (!pane.watched || !core || core.failed || (!visible && hidden_timer === 0)) {
     return;
   }
-  const view: Message | undefined = pane.has_view ? { detail: "DETAIL_FULL", bytes_per_s_max, ...(pane.renderer?.view_to_request(performance.now()) ?? {}) } : undefined;
+  const view: Message|undefined = pane.has_view ?
+    {detail: "DETAIL_FULL", bytes_per_s_max, ...(pane.renderer?.view_to_request(performance.now()) ?? {})} :
+    undefined;
   pane.view_ms = performance.now();
-  pane.subscription = core.subscribe({ subscribe_snapshots: { ...pane.watched, codec: "CODEC_DELTA", unacknowledged_max, headings: true, ...(view ? { view } : {}) } });
+  pane.subscription = core.subscribe({
+    subscribe_snapshots:
+      {...pane.watched, codec: "CODEC_DELTA", unacknowledged_max, headings: true, ...(view ? {view} : {})}
+  });
   if (pane.has_view) {
-    const { world, island } = pane.watched;
-    pane.overview = core.subscribe({ subscribe_snapshots: { world, island, rate_hz: 1, codec: "CODEC_DELTA", view: { detail: "DETAIL_DENSITY" } } });
+    const {world, island} = pane.watched;
+    pane.overview = core.subscribe(
+      {subscribe_snapshots: {world, island, rate_hz: 1, codec: "CODEC_DELTA", view: {detail: "DETAIL_DENSITY"}}});
   }
   flush();
 }
@@ -385,7 +411,7 @@ function request_view(pane: Pane, now: number): void {
     const view = pane.renderer.view_to_request(now);
     if (view) {
       pane.view_ms = now;
-      core?.set_view(pane.subscription, { ...view, bytes_per_s_max });
+      core?.set_view(pane.subscription, {...view, bytes_per_s_max});
     }
   }
 }
@@ -397,7 +423,7 @@ function report(number: number, pane: Pane, now: number): boolean {
     const camera = renderer.camera(), text = JSON.stringify(camera);
     if (camera && text !== pane.camera) {
       pane.camera = text;
-      scope.postMessage({ kind: "camera", pane: number, camera });
+      scope.postMessage({kind: "camera", pane: number, camera});
     }
   }
   if (renderer && now - pane.drawing_reported_ms >= drawing_report_ms) {
@@ -405,7 +431,7 @@ function report(number: number, pane: Pane, now: number): boolean {
     if (drawing && text !== pane.drawing) {
       pane.drawing = text;
       pane.drawing_reported_ms = now;
-      scope.postMessage({ kind: "drawing", pane: number, drawing });
+      scope.postMessage({kind: "drawing", pane: number, drawing});
     }
   }
   if (!pane.fresh || !pane.newest || pane.drawn_next.length > 0) {
@@ -416,7 +442,13 @@ function report(number: number, pane: Pane, now: number): boolean {
   }
   pane.fresh = false;
   pane.reported_ms = now;
-  scope.postMessage({ kind: "snapshot", pane: number, info: pane.newest.info, healthiest: renderer?.healthiest(5) ?? [], selected: renderer?.selected() ?? null });
+  scope.postMessage({
+    kind: "snapshot",
+    pane: number,
+    info: pane.newest.info,
+    healthiest: renderer?.healthiest(5) ?? [],
+    selected: renderer?.selected() ?? null
+  });
   return false;
 }
 
@@ -425,9 +457,9 @@ function show(is_visible: boolean): void {
   clearTimeout(hidden_timer);
   if (!visible) {
     hidden_timer = setTimeout(() => {
-      hidden_timer = 0;
-      panes.forEach(unwatch);
-    }, hidden_max_ms) as unknown as number;
+                     hidden_timer = 0;
+                     panes.forEach(unwatch);
+                   }, hidden_max_ms) as unknown as number;
     return;
   }
   hidden_timer = 0;
@@ -444,7 +476,7 @@ function show(is_visible: boolean): void {
 
 // ---- messages of the page ----------------------------------------------------------------------------------------------
 
-scope.onmessage = ({ data: message }) => {
+scope.onmessage = ({data: message}) => {
   switch (message.kind) {
     case "connect":
       begin(message.url, message.token, message.descriptor);
@@ -462,7 +494,7 @@ scope.onmessage = ({ data: message }) => {
       show(message.visible);
       break;
     case "ask_figures":
-      scope.postMessage({ kind: "figures", id: message.id, figures: figures() });
+      scope.postMessage({kind: "figures", id: message.id, figures: figures()});
       break;
     case "close_pane": {
       const pane = panes.get(message.pane);
@@ -480,7 +512,7 @@ scope.onmessage = ({ data: message }) => {
   }
 };
 
-type ForPane = Exclude<ToWorker, { kind: "connect" | "request" | "visible" | "ask_figures" | "close_pane" }>;
+type ForPane = Exclude<ToWorker, {kind: "connect" | "request" | "visible" | "ask_figures" | "close_pane"}>;
 
 function take_for_pane(number: number, pane: Pane, message: ForPane): void {
   const renderer = pane.renderer;
@@ -507,7 +539,7 @@ function take_for_pane(number: number, pane: Pane, message: ForPane): void {
       renderer?.resize(message.width, message.height, message.pixel_ratio);
       break;
     case "watch":
-      pane.watched = { world: message.world, island: message.island, rate_hz: message.rate_hz };
+      pane.watched = {world: message.world, island: message.island, rate_hz: message.rate_hz};
       pane.has_view = false;
       pane.newest = null;
       pane.fresh = false;
@@ -542,12 +574,12 @@ function take_for_pane(number: number, pane: Pane, message: ForPane): void {
       break;
     case "pick": {
       const picked = renderer?.pick(message.x, message.y, message.radius) ??
-        { generation: 0, organism: null, food: null, poison: null, x_px: -1, y_px: -1 };
-      scope.postMessage({ kind: "picked", id: message.id, ...picked });
+        {generation: 0, organism: null, food: null, poison: null, x_px: -1, y_px: -1};
+      scope.postMessage({kind: "picked", id: message.id, ...picked});
       break;
     }
     case "ask_columns":
-      scope.postMessage({ kind: "columns", id: message.id, columns: pane.newest });
+      scope.postMessage({kind: "columns", id: message.id, columns: pane.newest});
       break;
   }
 }
@@ -563,7 +595,7 @@ function request(id: number, request: Message, first: boolean): void {
     if (!(error instanceof InvalidMessage)) {
       throw error;
     }
-    scope.postMessage({ kind: "failed", id, message: error.message });
+    scope.postMessage({kind: "failed", id, message: error.message});
   }
 }
 
@@ -583,12 +615,16 @@ function percentile(times: number[], share: number): number {
 
 /** Figures for tests and benchmarks. Times are those of the last timings_kept snapshots and frames, in ms. */
 function figures(): Message {
-  const memory = (performance as { memory?: { usedJSHeapSize: number } }).memory;
+  const memory = (performance as {memory?: {usedJSHeapSize: number}}).memory;
   return {
-    decode_p50_ms: percentile(decode_times, 0.5), decode_p95_ms: percentile(decode_times, 0.95),
-    draw_p50_ms: percentile(draw_times, 0.5), draw_p95_ms: percentile(draw_times, 0.95),
+    decode_p50_ms: percentile(decode_times, 0.5),
+    decode_p95_ms: percentile(decode_times, 0.95),
+    draw_p50_ms: percentile(draw_times, 0.5),
+    draw_p95_ms: percentile(draw_times, 0.95),
     frames_per_s: frame_times.filter((at) => at > performance.now() - 1000).length,
-    snapshots: snapshot_count, damaged_snapshots: core?.damaged_snapshot_count ?? 0, reconnects: reconnect_count,
+    snapshots: snapshot_count,
+    damaged_snapshots: core?.damaged_snapshot_count ?? 0,
+    reconnects: reconnect_count,
     dropped: [...panes.values()].reduce((sum, pane) => sum + (pane.newest?.info.dropped_count ?? 0), 0),
     heap_bytes: memory?.usedJSHeapSize ?? 0,
   };

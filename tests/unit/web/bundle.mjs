@@ -1,4 +1,4 @@
-// Support of the tests of the page's modules without DOM: bundles modules of a folder of client/web/src into one.
+// Support of the tests of the page's modules without DOM: bundles modules of client/web/src into one.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -9,14 +9,14 @@ const sources = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../.
 const made = mkdtempSync(path.join(tmpdir(), "evod-web-"));
 process.on("exit", () => rmSync(made, { recursive: true }));
 
-/** Returns the exports of the modules in a folder: "breeding".
+/** Returns the exports of modules below client/web/src.
  *
- *  names  "plot_layout"; absent: all modules of the folder */
-export async function bundle(folder, names) {
-  const cwd = path.join(sources, folder);
-  const input = (names ?? readdirSync(cwd).map((file) => file.replace(/\.ts$/, "")))
-    .map((name) => `export * from "./${name}";\n`).join("");
-  execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--log-level=warning",
-    `--outfile=${made}/${folder}.mjs`], { cwd, input });
-  return import(`${made}/${folder}.mjs`);
+ *  modules  "world/link", or "breeding": all modules of the folder */
+export async function bundle(...modules) {
+  const files = modules.flatMap((module) => module.includes("/") ? [module]
+    : readdirSync(path.join(sources, module)).map((file) => `${module}/${file.replace(/\.ts$/, "")}`));
+  const out = path.join(made, `${modules.join("+").replaceAll("/", ".")}.mjs`);
+  execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--log-level=warning", `--outfile=${out}`],
+    { cwd: sources, input: files.map((file) => `export * from "./${file}";\n`).join("") });
+  return import(out);
 }

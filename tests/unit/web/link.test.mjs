@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const page = await bundle("page", ["link", "time_scale"]);
+const page = await bundle("world/link", "world/time_scale");
 const none = { world: null, generation: null, tick: null, island: null, organism: null, rate: null };
 
 /** The texts that page_link_test.cpp expects, with the moments that it makes them of. */

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const plots = await bundle("page", ["plot_layout", "history_table", "figures", "history_csv", "change_text"]);
+const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text");
 const shown = { min: 0, max: 100 };
 
 test("ticks are round and inside the range", () => {

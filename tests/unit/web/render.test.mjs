@@ -1,17 +1,14 @@
 // The pure parts of the page's renderer: colours and styles equal to those of evoview, the camera, interpolation, picking,
 // densities, labels, trails and flashes. Each is what client/viewer does.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { readdirSync, readFileSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import path from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { bundle } from "./bundle.mjs";
 
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../../..");
-const folder = path.join(root, "client/web/src/render");
-const all = readdirSync(folder).map((file) => `export * from "./${file.replace(/\.ts$/, "")}";\n`).join("");
-const bundle = execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts"], { cwd: folder, input: all });
-const render = await import("data:text/javascript;base64," + bundle.toString("base64"));
+const render = await bundle("render");
 
 // ---- colours ---------------------------------------------------------------------------------------------------
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const page = await bundle("page", ["numbers", "texts", "event_text"]);
+const page = await bundle("texts/numbers", "texts/texts", "world/event_text");
 
 function parameters(choices, numbers = {}) {
   const all = { population_size: 50, food_health: 25, poison_harm: 40, health_loss_per_s: 6, fitness_per_second: 1, fitness_per_health: 1, ...numbers };

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const { Tokens } = await bundle("page", ["tokens"]);
+const { Tokens } = await bundle("world/tokens");
 
 /** The tokens of a page in a tab that has stored a token. */
 function tokens_with(stored) {

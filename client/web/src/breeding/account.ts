@@ -1,8 +1,8 @@
 // Account: why the mean of each gene changed from the parents' generation to the next one, by Price's equation:
 // selection + transmission + migration = change. No DOM.
-import { gene_label } from "../organism/texts";
-import type { Message } from "../messages";
-import { with_sign } from "../page/numbers";
+import {gene_label} from "../organism/texts";
+import type {Message} from "../core/messages";
+import {with_sign} from "../texts/numbers";
 
 export interface GeneChangeOfMean {
   gene: number;
@@ -18,7 +18,7 @@ export interface GeneChangeOfMean {
 /** Returns the account of every gene; empty if the server does not know it.
  *
  *  next  GenerationStatistics of the generation after the parents' one, on the same island */
-export function accounts_of(next: Message | null, gene_names: readonly string[]): GeneChangeOfMean[] {
+export function accounts_of(next: Message|null, gene_names: readonly string[]): GeneChangeOfMean[] {
   const genes: Message[] = next?.genes ?? [];
   return genes.flatMap((statistics, gene) => {
     const account = statistics.account;
@@ -27,10 +27,14 @@ export function accounts_of(next: Message | null, gene_names: readonly string[])
     }
     const change: number = account.change ?? 0, deviation: number = statistics.deviation ?? 0;
     return [{
-      gene, name: gene_label(gene_names[gene] ?? `gene ${gene}`), mean: statistics.mean ?? 0,
+      gene,
+      name: gene_label(gene_names[gene] ?? `gene ${gene}`),
+      mean: statistics.mean ?? 0,
       selection: account.selection ?? 0,
-      transmission: account.transmission ?? 0, migration: account.migration ?? 0, change, relative: deviation > 0
-        ? change / deviation : 0,
+      transmission: account.transmission ?? 0,
+      migration: account.migration ?? 0,
+      change,
+      relative: deviation > 0 ? change / deviation : 0,
     }];
   });
 }
@@ -55,15 +59,16 @@ function part(number: number): string {
 
 /** The largest part as a sentence for pupils. */
 export function reason_text(account: GeneChangeOfMean): string {
-  const { selection, transmission, migration, change } = account;
+  const {selection, transmission, migration, change} = account;
   const largest = Math.max(Math.abs(selection), Math.abs(transmission), Math.abs(migration));
   if (change === 0 || largest === 0) {
     return "";
   }
-  return largest === Math.abs(selection) ? (selection > 0 ? "Organisms with more of it had more descendants."
-    : "Organisms with less of it had more descendants.")
-    : largest === Math.abs(transmission)
-      ? `Crossover and mutation gave the descendants ${transmission > 0 ? "more" : "less"} of it than their parents ` +
-        "had."
-    : `The migrants had ${migration > 0 ? "more" : "less"} of it.`;
+  return largest === Math.abs(selection) ?
+    (selection > 0 ? "Organisms with more of it had more descendants." :
+                     "Organisms with less of it had more descendants.") :
+    largest === Math.abs(transmission) ?
+    `Crossover and mutation gave the descendants ${transmission > 0 ? "more" : "less"} of it than their parents ` +
+      "had." :
+    `The migrants had ${migration > 0 ? "more" : "less"} of it.`;
 }

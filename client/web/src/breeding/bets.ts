@@ -1,6 +1,6 @@
 // Bets: the organisms that the user expects to be picked in a breeding, and the score of these bets. No DOM.
-import { three_digits, with_separators } from "../page/numbers";
-import type { Comparison } from "./comparison";
+import {three_digits, with_separators} from "../texts/numbers";
+import type {Comparison} from "./comparison";
 
 export const bets_max = 5;
 
@@ -35,8 +35,8 @@ export interface BetScore {
 /** copies  copies of each rank in the first `picks` picks */
 export function score_of(bets: Bets, comparison: Comparison, copies: readonly number[], picks: number): BetScore {
   const count = bets.organisms.length;
-  const score: BetScore = { bets: count, picks, hits: 0, random: copies.length > 0 ? count * picks / copies.length
-    : 0, law: 0, most: 0 };
+  const score: BetScore =
+    {bets: count, picks, hits: 0, random: copies.length > 0 ? count * picks / copies.length : 0, law: 0, most: 0};
   copies.forEach((number, rank) => {
     if (bets.has(comparison.organisms[rank]!)) {
       score.hits += number;
@@ -55,8 +55,9 @@ export function score_text(score: BetScore, complete: boolean): string {
     `${with_separators(score.hits)} of ${with_separators(score.picks)} ${score.picks === 1 ? "pick" : "picks"} hit ` +
     `your ${score.bets} ` +
     `${score.bets === 1 ? "bet" : "bets"}. Random bets: ${three_digits(score.random)} expected.`;
-  return !complete ? text
-    : `${text} Your bets: ${three_digits(score.law)} expected by the law of the selection. The best possible bets: ` +
+  return !complete ?
+    text :
+    `${text} Your bets: ${three_digits(score.law)} expected by the law of the selection. The best possible bets: ` +
       `${with_separators(score.most)}.` +
-    (score.random > 0 ? ` Score: ${three_digits(score.hits / score.random)} times random betting.` : "");
+      (score.random > 0 ? ` Score: ${three_digits(score.hits / score.random)} times random betting.` : "");
 }

@@ -1,8 +1,8 @@
 // Captions: sentences that explain the moment that the glass box shows. The words are those of evoview. No DOM.
-import type { Message } from "../messages";
-import { three_digits, with_separators } from "../page/numbers";
-import { type BreedingRecord, rank_of, slot_of } from "./record";
-import type { Moment } from "./stepper";
+import type {Message} from "../core/messages";
+import {three_digits, with_separators} from "../texts/numbers";
+import {type BreedingRecord, rank_of, slot_of} from "./record";
+import type {Moment} from "./stepper";
 
 export function counted(count: number, one: string, many: string): string {
   return `${with_separators(count)} ${count === 1 ? one : many}`;
@@ -23,8 +23,7 @@ function organism_text(record: BreedingRecord, organism: number): string {
   if (!contender) {
     return `organism ${organism}`;
   }
-  let text =
-    `organism ${organism} (rank ${with_separators(rank_of(contender) + 1)}, fitness ` +
+  let text = `organism ${organism} (rank ${with_separators(rank_of(contender) + 1)}, fitness ` +
     `${three_digits(contender.fitness ?? 0)}`;
   if (contender.own_fitness !== undefined) {
     text += ` assigned by shuffling, own fitness ${three_digits(contender.own_fitness)}`;
@@ -51,8 +50,9 @@ function picking_caption(record: BreedingRecord, index: number): string {
     const contestants: number[] = pick.contestants ?? [];
     const tournament = `${text}Tournament ${with_separators(pick.tournament + 1)}`;
     // Without contestants there were too many of them, or the server drew the winner directly.
-    return contestants.length === 0 ? `${tournament} is too large to show. ${capital(winner)} won.`
-      : `${tournament} of ${counted(contestants.length, "contestant", "contestants")}: ${winner} won.`;
+    return contestants.length === 0 ?
+      `${tournament} is too large to show. ${capital(winner)} won.` :
+      `${tournament} of ${counted(contestants.length, "contestant", "contestants")}: ${winner} won.`;
   }
   return `${text}${capital(winner)}.`;
 }
@@ -74,10 +74,10 @@ function breeding_caption(record: BreedingRecord, id: number): string {
   }
   const share = descendant.second_share ?? 0;
   const mutated = mutations.filter((mutation) => mutation.kind !== "MUTATION_KIND_CLAMP").length;
-  return `${text}a child of organisms ${first} and ${second}` +
-    (first === second ? ", the same organism twice" : "") +
-    (share > 0 ? `, blended with weights ${(1 - share).toFixed(3)} and ${share.toFixed(3)}` : descendant.crossed ? ""
-      : ", not crossed") +
+  return `${text}a child of organisms ${first} and ${second}` + (first === second ? ", the same organism twice" : "") +
+    (share > 0 ? `, blended with weights ${(1 - share).toFixed(3)} and ${share.toFixed(3)}` :
+       descendant.crossed ? "" :
+                            ", not crossed") +
     (descendant.order_mutation ? `, ${choice_text(descendant.order_mutation.method ?? "")} reordered genes` : "") +
     (mutated === 0 ? ", no mutation." : `, ${counted(mutated, "mutation", "mutations")}.`);
 }
@@ -99,15 +99,16 @@ export function selection_law_text(record: BreedingRecord): string {
     return "Truncation: the best organisms are picked in order of rank, then again from the first, until all picks " +
       "are made. There is no luck.";
   }
-  const law = method === "stochastic_universal"
-    ? "Universal sampling: one spin sets all pointers at equal distances, so each organism is picked its expected " +
-      "number of times, rounded up or down."
-    : "Roulette wheel: the wheel is spun for each pick. An organism with twice the weight is picked twice as often " +
+  const law = method === "stochastic_universal" ?
+    "Universal sampling: one spin sets all pointers at equal distances, so each organism is picked its expected " +
+      "number of times, rounded up or down." :
+    "Roulette wheel: the wheel is spun for each pick. An organism with twice the weight is picked twice as often " +
       "on average.";
   const any_negative = record.contenders.some((contender) => (contender.fitness ?? 0) < 0);
-  return law + (scaling === "none" && !any_negative ? " The weight is the fitness."
-    : scaling === "none" || scaling === "windowing" ? " The weight is the fitness minus the lowest fitness."
-    : " The weight depends on the rank alone.");
+  return law +
+    (scaling === "none" && !any_negative             ? " The weight is the fitness." :
+       scaling === "none" || scaling === "windowing" ? " The weight is the fitness minus the lowest fitness." :
+                                                       " The weight depends on the rank alone.");
 }
 
 /** "Roulette with windowing · hybrid · 50 organisms, 25 picks: 25 survivors and 25 children" */
@@ -119,8 +120,9 @@ export function breeding_summary(record: BreedingRecord): string {
   const method = record.choice("selection"), scaling = record.choice("fitness_scaling");
   const wheel = method === "roulette" || method === "stochastic_universal";
   return capital(choice_text(method)) +
-    (method === "tournament" ? ` of ${record.number("tournament_size") ?? 0}` : wheel && scaling !== "none"
-      ? ` with ${choice_text(scaling)}` : "") +
+    (method === "tournament" ? ` of ${record.number("tournament_size") ?? 0}` :
+       wheel && scaling !== "none" ? ` with ${choice_text(scaling)}` :
+                                     "") +
     ` · ${choice_text(record.choice("population_model"))} · ` +
     `${counted(head.contender_count ?? 0, "organism", "organisms")}, ` +
     `${counted(head.pick_count ?? 0, "pick", "picks")}: ${counted(record.survivor_count, "survivor", "survivors")}` +
@@ -131,12 +133,16 @@ export function breeding_summary(record: BreedingRecord): string {
 
 export function caption(record: BreedingRecord, moment: Moment): string {
   switch (moment.stage) {
-    case "scaling": return selection_law_text(record);
-    case "picking": return picking_caption(record, moment.index);
-    case "breeding": return breeding_caption(record, moment.index);
-    case "done": return `The next generation: ${counted(record.survivor_count, "survivor", "survivors")} and ` +
-      `${counted((record.head?.descendant_count ?? 0) - record.survivor_count, "child", "children")}. A dot marks ` +
-      "each organism that was picked.";
+    case "scaling":
+      return selection_law_text(record);
+    case "picking":
+      return picking_caption(record, moment.index);
+    case "breeding":
+      return breeding_caption(record, moment.index);
+    case "done":
+      return `The next generation: ${counted(record.survivor_count, "survivor", "survivors")} and ` +
+        `${counted((record.head?.descendant_count ?? 0) - record.survivor_count, "child", "children")}. A dot marks ` +
+        "each organism that was picked.";
   }
 }
 
@@ -150,6 +156,7 @@ export function contender_text(organism: number, contender: Message, complete: b
     (slot > 0 ? `, weight ${three_digits(contender.weight ?? 0)}: ${three_digits(100 * slot)} % of the wheel` : "") +
     `; expected picks ${three_digits(contender.expected_copies ?? 0)}` +
     (complete ? `, observed ${with_separators(contender.copies ?? 0)}` : "") +
-    (contender.migrant
-      ? `; came from island ${contender.migrant.island ?? 0}, organism ${contender.migrant.organism ?? 0} there` : "");
+    (contender.migrant ?
+       `; came from island ${contender.migrant.island ?? 0}, organism ${contender.migrant.organism ?? 0} there` :
+       "");
 }

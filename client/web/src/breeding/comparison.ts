@@ -1,7 +1,7 @@
 // Comparison: for each rank, the observed number of copies beside the number that the law of the selection method
 // expects.
 // No DOM.
-import { type BreedingRecord, rank_of } from "./record";
+import {type BreedingRecord, rank_of} from "./record";
 
 /** Each list is indexed by rank and has one entry per contender. */
 export interface Comparison {
@@ -16,7 +16,7 @@ export interface Comparison {
 }
 
 /** Compares the observed copies with the expected ones. Returns null until the server has sent every contender. */
-export function compare(record: BreedingRecord): Comparison | null {
+export function compare(record: BreedingRecord): Comparison|null {
   const count = record.contender_count;
   if (count === 0 || record.contenders.length !== count) {
     return null;
@@ -30,12 +30,17 @@ export function compare(record: BreedingRecord): Comparison | null {
   }
   const column = (field: string): number[] => by_rank.map((organism) => record.contenders[organism]![field] ?? 0);
   const copies = column("copies"), expected = column("expected_copies"),
-    standard_error = column("expected_copies_error");
+        standard_error = column("expected_copies_error");
   const deviations = copies.map((observed, rank) => deviation(observed, expected[rank]!, standard_error[rank]!));
   return {
-    organisms: by_rank, fitness: column("fitness"), copies, expected, standard_error,
+    organisms: by_rank,
+    fitness: column("fitness"),
+    copies,
+    expected,
+    standard_error,
     unpicked_chance: column("unpicked_chance"),
-    deviations, beyond_two: deviations.filter((off) => Math.abs(off) > 2).length,
+    deviations,
+    beyond_two: deviations.filter((off) => Math.abs(off) > 2).length,
   };
 }
 
@@ -74,13 +79,19 @@ export interface RankColumn {
  *
  *  copies          observed copies by rank
  *  expected_share  factor for the expected copies: the fraction of all picks that `copies` includes, 0 to 1 */
-export function rank_columns(comparison: Comparison, copies: readonly number[], expected_share: number,
-    columns: number): RankColumn[] {
+export function rank_columns(
+  comparison: Comparison, copies: readonly number[], expected_share: number, columns: number): RankColumn[] {
   const count = copies.length, made: RankColumn[] = [];
   columns = Math.min(columns, count);
   for (let i = 0; i < columns; ++i) {
-    const column = { first: Math.floor(i * count / columns), last: Math.floor((i + 1) * count / columns) - 1, copies: 0,
-      expected: 0, standard_error: 0, deviation: 0 };
+    const column = {
+      first: Math.floor(i * count / columns),
+      last: Math.floor((i + 1) * count / columns) - 1,
+      copies: 0,
+      expected: 0,
+      standard_error: 0,
+      deviation: 0
+    };
     let all_copies = 0, all_expected = 0, variance = 0;
     for (let rank = column.first; rank <= column.last; ++rank) {
       column.copies += copies[rank]!;
@@ -100,7 +111,7 @@ export function rank_columns(comparison: Comparison, copies: readonly number[], 
 export interface PickColumn {
   first: number; // picks
   last: number;
-  rank: number | null; // mean rank of the picks made; null if none was made or received
+  rank: number|null; // mean rank of the picks made; null if none was made or received
 }
 
 /** Distributes all picks, in order, over at most `columns` groups. Ignores the ranks of picks after `index`. */
@@ -110,10 +121,10 @@ export function pick_columns(record: BreedingRecord, index: number, columns: num
   for (let i = 0; i < columns; ++i) {
     const first = Math.floor(i * count / columns), last = Math.floor((i + 1) * count / columns) - 1;
     const ranks = record.picks.slice(first, Math.min(last, index) + 1)
-      .map((pick) => record.contenders[pick.organism ?? 0]).filter((contender) => contender !== undefined)
-        .map((contender) => rank_of(contender!));
-    made.push({ first, last, rank: ranks.length > 0 ? ranks.reduce((sum, rank) => sum + rank, 0) / ranks.length
-      : null });
+                    .map((pick) => record.contenders[pick.organism ?? 0])
+                    .filter((contender) => contender !== undefined)
+                    .map((contender) => rank_of(contender!));
+    made.push({first, last, rank: ranks.length > 0 ? ranks.reduce((sum, rank) => sum + rank, 0) / ranks.length : null});
   }
   return made;
 }

@@ -23,7 +23,7 @@ export class GenerationHold {
   /** Returns the command to send to the world now. Ends the hold if another run is shown.
    *
    *  stepping  whether the world runs to a given tick and pauses there */
-  update(run: string, state: string, stepping: boolean): "none" | "run one generation" | "step one tick" {
+  update(run: string, state: string, stepping: boolean): "none"|"run one generation"|"step one tick" {
     if (this.#run !== run) {
       this.release();
     } else if (this.on && state === "RUN_STATE_RUNNING" && !stepping && !this.#limited) {

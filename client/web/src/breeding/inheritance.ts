@@ -1,6 +1,6 @@
 // Inheritance: how crossover, order mutation, mutations and bounds turned the genes of the parents into those of a
 // descendant. No DOM.
-import type { Message } from "../messages";
+import type {Message} from "../core/messages";
 
 export interface GeneOrigin {
   value: number;
@@ -23,7 +23,7 @@ export interface Inheritance {
   second: number[];
   cuts: number[]; // after gene g - 1, the child takes its genes from the other parent
   crossed: GeneOrigin[]; // by gene, after the crossover
-  moves: { from: number; to: number }[]; // by the order mutation; genes that stayed are not included
+  moves: {from: number; to: number}[]; // by the order mutation; genes that stayed are not included
   arranged: GeneOrigin[]; // by gene, after the order mutation
   changes: GeneChange[]; // in the order in which they happened
   changed: boolean[]; // by gene
@@ -32,33 +32,48 @@ export interface Inheritance {
 
 /** Whether gene g comes from the second parent. */
 export function is_from_second(descendant: Message, gene: number): boolean {
-  const word: number = gene < 32 ? descendant.from_second ?? 0
-    : descendant.more_from_second?.[Math.floor(gene / 32) - 1] ?? 0;
+  const word: number =
+    gene < 32 ? descendant.from_second ?? 0 : descendant.more_from_second?.[Math.floor(gene / 32) - 1] ?? 0;
   return ((word >>> (gene % 32)) & 1) === 1;
 }
 
 /** Returns null if the lists of the Descendant contradict each other. */
-export function inheritance_of(descendant: Message): Inheritance | null {
+export function inheritance_of(descendant: Message): Inheritance|null {
   const first: number[] = descendant.first_genes ?? [], second: number[] = descendant.second_genes ?? [];
   const count = first.length;
-  const order: number[] | undefined = descendant.order_mutation?.order;
+  const order: number[]|undefined = descendant.order_mutation?.order;
   const alone = second.length === 0 || descendant.kind !== "DESCENDANT_KIND_CHILD";
-  if (count === 0 || (!alone && second.length !== count) ||
+  if (
+    count === 0 || (!alone && second.length !== count) ||
     (second.length === 0 && (descendant.from_second ?? 0) !== 0) ||
     (descendant.order_mutation && order?.length !== count)) {
     return null;
   }
-  const result: Inheritance = { alone, first, second, cuts: [], crossed: [], moves: [], arranged: [], changes: [],
-    changed: first.map(() => false), genes: [] };
+  const result: Inheritance = {
+    alone,
+    first,
+    second,
+    cuts: [],
+    crossed: [],
+    moves: [],
+    arranged: [],
+    changes: [],
+    changed: first.map(() => false),
+    genes: []
+  };
   const share: number = alone ? 0 : descendant.second_share ?? 0;
   for (let gene = 0; gene < count; ++gene) {
     if (share > 0) {
-      result.crossed.push({ value: Math.fround(first[gene]! + share * (second[gene]! - first[gene]!)),
-        from_second: false, blended: true, gene });
+      result.crossed.push({
+        value: Math.fround(first[gene]! + share * (second[gene]! - first[gene]!)),
+        from_second: false,
+        blended: true,
+        gene
+      });
       continue;
     }
     const from_second = !alone && is_from_second(descendant, gene);
-    result.crossed.push({ value: from_second ? second[gene]! : first[gene]!, from_second, blended: false, gene });
+    result.crossed.push({value: from_second ? second[gene]! : first[gene]!, from_second, blended: false, gene});
     if (gene > 0 && from_second !== result.crossed[gene - 1]!.from_second) {
       result.cuts.push(gene);
     }
@@ -73,7 +88,7 @@ export function inheritance_of(descendant: Message): Inheritance | null {
       }
       result.arranged[gene] = moved;
       if (from !== gene) {
-        result.moves.push({ from, to: gene });
+        result.moves.push({from, to: gene});
       }
     }
   }
@@ -83,7 +98,7 @@ export function inheritance_of(descendant: Message): Inheritance | null {
     if (gene >= count) {
       return null;
     }
-    result.changes.push({ kind: mutation.kind ?? "", gene, before: mutation.before ?? 0, after: mutation.after ?? 0 });
+    result.changes.push({kind: mutation.kind ?? "", gene, before: mutation.before ?? 0, after: mutation.after ?? 0});
     result.genes[gene] = mutation.after ?? 0;
     result.changed[gene] = true;
   }
@@ -93,12 +108,18 @@ export function inheritance_of(descendant: Message): Inheritance | null {
 /** "creep", "reset", "scale", "bit flip", "clamped" */
 export function mutation_text(kind: string): string {
   switch (kind) {
-    case "MUTATION_KIND_CREEP": return "creep";
-    case "MUTATION_KIND_RESET": return "reset";
-    case "MUTATION_KIND_SCALE": return "scale";
-    case "MUTATION_KIND_BIT_FLIP": return "bit flip";
-    case "MUTATION_KIND_CLAMP": return "clamped";
-    default: return "mutation";
+    case "MUTATION_KIND_CREEP":
+      return "creep";
+    case "MUTATION_KIND_RESET":
+      return "reset";
+    case "MUTATION_KIND_SCALE":
+      return "scale";
+    case "MUTATION_KIND_BIT_FLIP":
+      return "bit flip";
+    case "MUTATION_KIND_CLAMP":
+      return "clamped";
+    default:
+      return "mutation";
   }
 }
 
@@ -117,7 +138,7 @@ export function origin_text(inheritance: Inheritance, gene: number, name: string
   const origin = inheritance.arranged[gene]!;
   const parent = (origin.from_second ? descendant.second_parent : descendant.first_parent) ?? 0;
   const changes = inheritance.changes.filter((change) => change.gene === gene)
-    .map((change) => `, ${mutation_text(change.kind)} to ${gene_text(change.after)}`);
+                    .map((change) => `, ${mutation_text(change.kind)} to ${gene_text(change.after)}`);
   return `${name}: ${gene_text(origin.value)}${origin.blended ? ", a mean of both parents" : ` of parent ${parent}`}` +
     (origin.gene !== gene ? `, moved from gene ${origin.gene + 1}` : "") + changes.join("");
 }
@@ -129,9 +150,10 @@ export function other_genes_text(inheritance: Inheritance, first_gene: number, d
   const mutated = inheritance.changed.slice(first_gene).filter((changed) => changed).length;
   const one = descendant.first_parent ?? 0, two = descendant.second_parent ?? 0;
   const parts = [
-    others.some((origin) => origin.blended) ? `means of parents ${one} and ${two}`
-      : `${others.length - from_second} of parent ${one}`,
-    from_second > 0 ? `${from_second} of parent ${two}` : "", mutated > 0 ? `${mutated} mutated` : "",
+    others.some((origin) => origin.blended) ? `means of parents ${one} and ${two}` :
+                                              `${others.length - from_second} of parent ${one}`,
+    from_second > 0 ? `${from_second} of parent ${two}` : "",
+    mutated > 0 ? `${mutated} mutated` : "",
   ];
   return `${others.length} other genes: ${parts.filter((part) => part !== "").join(", ")}`;
 }
@@ -158,7 +180,7 @@ export function gene_blocks(names: readonly string[], first: number): GeneBlock[
     if (last && last.neuron === neuron && (neuron !== "" || last.count < unnamed_max)) {
       last.count += 1;
     } else {
-      blocks.push({ label: neuron || name, neuron, first: gene, count: 1 });
+      blocks.push({label: neuron || name, neuron, first: gene, count: 1});
     }
   }
   return blocks;

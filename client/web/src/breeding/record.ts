@@ -1,6 +1,6 @@
 // BreedingRecord: how one generation was bred, merged from the pages that the server has sent so far. No DOM.
-import type { Message } from "../messages";
-import type { Moment } from "./stepper";
+import type {Message} from "../core/messages";
+import type {Moment} from "./stepper";
 
 export const rows_kept_max = 20_000; // of each list
 const rows_ahead = 64; // requested beyond the row shown, so that playing does not wait for the server
@@ -18,7 +18,7 @@ export function same_key(a: BreedingKey, b: BreedingKey): boolean {
 
 export class BreedingRecord {
   /** Breeding without its lists; null before the first page. */
-  head: Message | null = null;
+  head: Message|null = null;
   /** The rows received so far, from row 0. */
   readonly contenders: Message[] = [];
   readonly picks: Message[] = [];
@@ -50,8 +50,8 @@ export class BreedingRecord {
 
   /** Returns the fields of the next GetBreeding that is needed to show `moment`. Returns null if no data is missing, or
    *  if the last answer contained no new row. */
-  wanted(moment: Moment): Message | null {
-    const fields: Message = { world: this.key.world, island: this.key.island, generation: this.key.generation };
+  wanted(moment: Moment): Message|null {
+    const fields: Message = {world: this.key.world, island: this.key.island, generation: this.key.generation};
     if (!this.head) {
       return fields;
     }
@@ -67,12 +67,12 @@ export class BreedingRecord {
       any = true;
       return have;
     };
-    const { contender_count, pick_count = 0, descendant_count = 0 } = this.head;
+    const {contender_count, pick_count = 0, descendant_count = 0} = this.head;
     fields.first_contender = first_of(this.contenders.length, contender_count ?? 0, contender_count ?? 0);
-    fields.first_pick = first_of(this.picks.length, moment.stage === "picking" ? moment.index + rows_ahead
-      : 0, pick_count);
-    fields.first_descendant = first_of(this.descendants.length, moment.stage === "breeding" ? moment.index + rows_ahead
-      : 0, descendant_count);
+    fields.first_pick =
+      first_of(this.picks.length, moment.stage === "picking" ? moment.index + rows_ahead : 0, pick_count);
+    fields.first_descendant =
+      first_of(this.descendants.length, moment.stage === "breeding" ? moment.index + rows_ahead : 0, descendant_count);
     return any ? fields : null;
   }
 
@@ -82,10 +82,10 @@ export class BreedingRecord {
       return false;
     }
     if (!this.head) {
-      const { contenders: _contenders, picks: _picks, descendants: _descendants, ...head } = page;
+      const {contenders: _contenders, picks: _picks, descendants: _descendants, ...head} = page;
       this.head = head;
     }
-    const append = (have: Message[], rows: Message[] | undefined, count: number): boolean => {
+    const append = (have: Message[], rows: Message[]|undefined, count: number): boolean => {
       const added = (rows ?? []).slice(0, Math.max(0, Math.min(count, rows_kept_max) - have.length));
       have.push(...added);
       return added.length > 0;
@@ -105,12 +105,12 @@ export class BreedingRecord {
   }
 
   /** The value of a real or whole-number parameter; a flag is 0 or 1. */
-  number(name: string): number | null {
+  number(name: string): number|null {
     const value = this.#parameter(name);
     return !value ? null : value.real ?? value.count ?? (value.flag === undefined ? null : value.flag ? 1 : 0);
   }
 
-  #parameter(name: string): Message | null {
+  #parameter(name: string): Message|null {
     const found = (this.head?.parameters ?? []).find((parameter: Message) => parameter.name === name);
     return found?.value ?? null;
   }

@@ -1,7 +1,7 @@
 // Stepper: keeps the moment of a breeding that the glass box shows; steps forward and back, plays, and jumps. The
 // moments are: the fitness and its scaling; each pick; each descendant; the complete next generation. No DOM, no clock.
 
-export type Stage = "scaling" | "picking" | "breeding" | "done";
+export type Stage = "scaling"|"picking"|"breeding"|"done";
 
 export interface Moment {
   stage: Stage;
@@ -26,10 +26,10 @@ export class Stepper {
   }
 
   get moment(): Moment {
-    return this.position === 0 ? { stage: "scaling", index: 0 }
-      : this.position <= this.#picks ? { stage: "picking", index: this.position - 1 }
-      : this.position <= this.#picks + this.#descendants ? { stage: "breeding", index: this.position - 1 - this.#picks }
-      : { stage: "done", index: 0 };
+    return this.position === 0                         ? {stage: "scaling", index: 0} :
+      this.position <= this.#picks                     ? {stage: "picking", index: this.position - 1} :
+      this.position <= this.#picks + this.#descendants ? {stage: "breeding", index: this.position - 1 - this.#picks} :
+                                                         {stage: "done", index: 0};
   }
 
   get last_position(): number {
@@ -45,8 +45,10 @@ export class Stepper {
   }
 
   begin_of(stage: Stage): number {
-    return stage === "scaling" ? 0 : stage === "picking" ? 1 : stage === "breeding" ? 1 + this.#picks
-      : this.last_position;
+    return stage === "scaling" ? 0 :
+      stage === "picking"      ? 1 :
+      stage === "breeding"     ? 1 + this.#picks :
+                                 this.last_position;
   }
 
   // The following functions perform the user's moves. Each of them also stops playing.
@@ -71,8 +73,8 @@ export class Stepper {
 
   /** Goes to the first moment of this stage; if already there, of the previous stage. */
   previous_stage(): void {
-    const previous = (["breeding", "picking", "scaling"] as const)
-      .find((stage) => this.begin_of(stage) < this.position);
+    const previous =
+      (["breeding", "picking", "scaling"] as const).find((stage) => this.begin_of(stage) < this.position);
     this.go_to(previous ? this.begin_of(previous) : this.position);
   }
 

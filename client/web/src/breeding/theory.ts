@@ -7,13 +7,13 @@
 //         & Deb 1991, "A comparative analysis of selection schemes used in genetic algorithms"; Motoki 2002,
 //         "Calculating the
 //         expected loss of diversity of selection schemes", Evol. Comput. 10(4).
-import { type Comparison, deviation } from "./comparison";
-import type { BreedingRecord } from "./record";
+import {type Comparison, deviation} from "./comparison";
+import type {BreedingRecord} from "./record";
 
 /** The properties of a selection that decide which predictions are possible. */
 export interface Selection {
-  method: "roulette" | "stochastic_universal" | "tournament" | "random" | "truncation";
-  pressure: "fitness" | "windowed_fitness" | "rank"; // what decides the chance of an organism
+  method: "roulette"|"stochastic_universal"|"tournament"|"random"|"truncation";
+  pressure: "fitness"|"windowed_fitness"|"rank"; // what decides the chance of an organism
   independent_picks: boolean; // a pick does not change the chances in other picks
   overlapping: boolean; // steady_state: most organisms survive into the next generation
   picks: number;
@@ -25,9 +25,9 @@ export interface Prediction {
   sentence: string;
   source: string;
   unit: string; // "": dimensionless
-  expected: number | null; // null: never, or no theory predicts it; see `sentence`
-  observed: number | null; // null: cannot be observed in one breeding
-  standard_error: number | null; // of the observed number; null: unknown
+  expected: number|null; // null: never, or no theory predicts it; see `sentence`
+  observed: number|null; // null: cannot be observed in one breeding
+  standard_error: number|null; // of the observed number; null: unknown
 }
 
 export function selection_of(record: BreedingRecord): Selection {
@@ -36,9 +36,11 @@ export function selection_of(record: BreedingRecord): Selection {
   const scaling = record.choice("fitness_scaling"), picks = record.head?.pick_count ?? 0;
   const wheel = method === "roulette" || method === "stochastic_universal";
   return {
-    method, picks,
-    pressure: !wheel || scaling === "linear_ranking" || scaling === "exponential_ranking" ? "rank"
-      : scaling === "windowing" ? "windowed_fitness" : "fitness",
+    method,
+    picks,
+    pressure: !wheel || scaling === "linear_ranking" || scaling === "exponential_ranking" ? "rank" :
+      scaling === "windowing"                                                             ? "windowed_fitness" :
+                                                                                            "fitness",
     independent_picks: method === "roulette" ||
       (method === "tournament" && Math.min(record.number("tournament_winners") ?? 1, picks) === 1),
     overlapping: record.choice("population_model") === "steady_state",
@@ -46,10 +48,11 @@ export function selection_of(record: BreedingRecord): Selection {
 }
 
 /** (observed − expected) / standard error; null if one of the three is unknown. */
-export function deviation_of(prediction: Prediction): number | null {
-  const { observed, expected, standard_error } = prediction;
-  return observed === null || expected === null || standard_error === null ? null
-    : deviation(observed, expected, standard_error);
+export function deviation_of(prediction: Prediction): number|null {
+  const {observed, expected, standard_error} = prediction;
+  return observed === null || expected === null || standard_error === null ?
+    null :
+    deviation(observed, expected, standard_error);
 }
 
 function sum(numbers: readonly number[]): number {
@@ -70,27 +73,38 @@ export function upper_normal_quantile(above: number): number {
   if (above > 0.5) {
     return -upper_normal_quantile(1 - above);
   }
-  const polynomial = (x: number, coefficients: readonly number[]): number => coefficients
-    .reduce((value, coefficient) => value * x + coefficient, 0);
+  const polynomial = (x: number, coefficients: readonly number[]): number =>
+    coefficients.reduce((value, coefficient) => value * x + coefficient, 0);
   if (above < 0.02425) {
     const q = Math.sqrt(-2 * Math.log(above));
-    return -polynomial(q, [-7.784894002430293e-3, -3.223964580411365e-1, -2.400758277161838, -2.549732539343734,
-      4.374664141464968, 2.938163982698783]) /
+    return -polynomial(
+             q,
+             [
+               -7.784894002430293e-3, -3.223964580411365e-1, -2.400758277161838, -2.549732539343734, 4.374664141464968,
+               2.938163982698783
+             ]) /
       polynomial(q, [7.784695709041462e-3, 3.224671290700398e-1, 2.445134137142996, 3.754408661907416, 1]);
   }
   const q = 0.5 - above, r = q * q;
-  return q * polynomial(r, [-3.969683028665376e1, 2.209460984245205e2, -2.759285104469687e2, 1.38357751867269e2,
-    -3.066479806614716e1, 2.506628277459239]) /
-    polynomial(r,
-      [-5.447609879822406e1, 1.615858368580409e2, -1.556989798598866e2, 6.680131188771972e1, -1.328068155288572e1, 1]);
+  return q *
+    polynomial(
+           r,
+           [
+             -3.969683028665376e1, 2.209460984245205e2, -2.759285104469687e2, 1.38357751867269e2, -3.066479806614716e1,
+             2.506628277459239
+           ]) /
+    polynomial(r, [
+           -5.447609879822406e1, 1.615858368580409e2, -1.556989798598866e2, 6.680131188771972e1, -1.328068155288572e1, 1
+         ]);
 }
 
 /** Divides the normal distribution into as many intervals of equal probability as there are ranks. Returns the mean
  *  within each interval, for the best rank first. The sum is 0. */
 export function normal_scores(population: number): number[] {
-  const density_above = (ranks: number): number => ranks === 0 || ranks === population ? 0
-    : Math.exp(-(upper_normal_quantile(ranks / population) ** 2) / 2) / Math.sqrt(2 * Math.PI);
-  return Array.from({ length: population }, (_, rank) => population * (density_above(rank + 1) - density_above(rank)));
+  const density_above = (ranks: number): number => ranks === 0 || ranks === population ?
+    0 :
+    Math.exp(-(upper_normal_quantile(ranks / population) ** 2) / 2) / Math.sqrt(2 * Math.PI);
+  return Array.from({length: population}, (_, rank) => population * (density_above(rank + 1) - density_above(rank)));
 }
 
 /** The mean of the scores, weighted by the copies. */
@@ -108,7 +122,7 @@ export function loss_of_diversity(copies: readonly number[]): number {
 
 /** The standard error of the mean score of the picked organisms; null if no simple formula exists, because the picks
  *  depend on each other. */
-function error_of_intensity(selection: Selection, comparison: Comparison, scores: readonly number[]): number | null {
+function error_of_intensity(selection: Selection, comparison: Comparison, scores: readonly number[]): number|null {
   const population = scores.length, picks = selection.picks;
   if (selection.method === "truncation") {
     return 0;
@@ -127,7 +141,7 @@ function error_of_intensity(selection: Selection, comparison: Comparison, scores
 /** The standard error of the share of organisms that are not picked. For independent picks it follows from the variance
  *  of the number of empty cells in large populations: Σ(q − q²) − (Σ λq)²/picks, with the expected copies λ and the
  *  chance q of none. */
-function error_of_unpicked(selection: Selection, comparison: Comparison): number | null {
+function error_of_unpicked(selection: Selection, comparison: Comparison): number|null {
   if (selection.method === "truncation" || selection.method === "random") {
     return 0;
   }
@@ -135,15 +149,15 @@ function error_of_unpicked(selection: Selection, comparison: Comparison): number
     return null;
   }
   const common = sum(comparison.expected.map((copies, rank) => copies * comparison.unpicked_chance[rank]!));
-  const variance = sum(comparison.unpicked_chance
-    .map((chance) => chance * (1 - chance))) - common * common / selection.picks;
+  const variance =
+    sum(comparison.unpicked_chance.map((chance) => chance * (1 - chance))) - common * common / selection.picks;
   return Math.sqrt(Math.max(variance, 0)) / comparison.expected.length;
 }
 
 const generations_max = 10_000_000; // a longer takeover counts as never
 
 /** On a wheel with unscaled fitness, an organism's share after t generations is f^t / Σ f^t, where f is its fitness. */
-function takeover_on_wheel(fitness: readonly number[]): number | null {
+function takeover_on_wheel(fitness: readonly number[]): number|null {
   const best = fitness[0]!, goal = 1 - 1 / fitness.length;
   if (fitness[fitness.length - 1]! < 0 || best <= 0) {
     return null;
@@ -178,8 +192,8 @@ function takeover_on_wheel(fitness: readonly number[]): number | null {
 
 /** Generations until copies of the fittest occupy all places but one, by selection alone, if each number of copies
  *  equals its expectation; null if that never happens or theory gives no value. Source: Goldberg & Deb 1991. */
-export function takeover_generations(selection: Selection, copies: readonly number[],
-    fitness: readonly number[]): number | null {
+export function takeover_generations(
+  selection: Selection, copies: readonly number[], fitness: readonly number[]): number|null {
   const population = copies.length;
   if (population <= 1) {
     return 0;
@@ -225,10 +239,13 @@ function agreement(selection: Selection, comparison: Comparison): Prediction {
     square += (comparison.copies[rank]! - expected) ** 2 / expected;
   });
   return {
-    name: "Agreement of all copies", unit: "", source: "Pearson 1900; Haldane 1937",
+    name: "Agreement of all copies",
+    unit: "",
+    source: "Pearson 1900; Haldane 1937",
     sentence: "Squared differences between observed and expected copies, each divided by the expected copies " +
       "(chi-square per organism): about 1 if the law holds.",
-    expected: (ranks - 1) / ranks, observed: square / ranks,
+    expected: (ranks - 1) / ranks,
+    observed: square / ranks,
     standard_error: Math.sqrt(Math.max(2 * (ranks - 1) + (inverse - ranks * ranks - 2 * ranks + 2) / picks, 0)) / ranks,
   };
 }
@@ -242,46 +259,76 @@ export function predictions(selection: Selection, comparison: Comparison): Predi
   const population = comparison.organisms.length;
   const takeover = takeover_generations(selection, comparison.expected, comparison.fitness);
   const intensity = (name: string, sentence: string, of: readonly number[]): Prediction => ({
-    name, sentence, unit: "deviations", source: "Blickle & Thiele 1996",
-    expected: weighted_mean(comparison.expected, of), observed: weighted_mean(comparison.copies, of),
+    name,
+    sentence,
+    unit: "deviations",
+    source: "Blickle & Thiele 1996",
+    expected: weighted_mean(comparison.expected, of),
+    observed: weighted_mean(comparison.copies, of),
     standard_error: error_of_intensity(selection, comparison, of),
   });
-  const all: Prediction[] = [{
-    name: "Copies of the fittest", sentence: "How often the organism with the best fitness is picked.", unit: "",
-    source: selection.method === "stochastic_universal" ? "Baker 1987" : selection.method === "tournament"
-      ? "Goldberg & Deb 1991" : "Blickle & Thiele 1996",
-    expected: comparison.expected[0]!, observed: comparison.copies[0]!, standard_error: comparison.standard_error[0]!,
-  },
-  intensity("Selection intensity",
-    "By how many standard deviations the mean fitness of the picked organisms exceeds the mean fitness of all " +
-    "organisms.", standard_scores(comparison.fitness)),
-  ...(selection.pressure === "rank" ? [intensity("Intensity, normal fitness",
-    "The selection intensity if the fitness had a normal distribution: it would depend only on the ranks.",
-    normal_scores(population))] : []), {
-    name: "Share not selected", unit: "", source: "Motoki 2002",
-    sentence: "The share of organisms that are never picked; genes that only these organisms had are lost.",
-    expected: sum(comparison.unpicked_chance) / population,
-    observed: comparison.copies.filter((copies) => copies === 0).length / population,
-    standard_error: error_of_unpicked(selection, comparison),
-  }, {
-    name: "Loss of diversity", unit: "", source: "Blickle & Thiele 1996",
-    sentence: "The share of the population that copies of fitter organisms replace if every organism has its " +
-      "expected number of copies: the least possible loss.",
-    expected: loss_of_diversity(comparison.expected), observed: null, standard_error: null,
-  }, {
-    name: "Takeover time", unit: "generations", source: "Goldberg & Deb 1991", expected: takeover, observed: null,
-    standard_error: null,
-    sentence: selection.overlapping
-      ? "Generations until copies of the fittest fill all places but one; not predicted if most of a generation " +
-        "survives."
-      : takeover !== null
-        ? "Generations of selection alone, without mutation and crossover, until copies of the fittest fill all " +
-          "places but one."
-      : selection.pressure !== "rank"
-        ? "Generations until copies of the fittest fill all places but one; not predicted if each generation " +
-          "subtracts its lowest fitness, or if all fitness values are equal."
-      : "Generations until copies of the fittest fill all places but one: never, because every organism has the same " +
-        "chance.",
-  }];
+  const all: Prediction[] = [
+    {
+      name: "Copies of the fittest",
+      sentence: "How often the organism with the best fitness is picked.",
+      unit: "",
+      source: selection.method === "stochastic_universal" ? "Baker 1987" :
+        selection.method === "tournament"                 ? "Goldberg & Deb 1991" :
+                                                            "Blickle & Thiele 1996",
+      expected: comparison.expected[0]!,
+      observed: comparison.copies[0]!,
+      standard_error: comparison.standard_error[0]!,
+    },
+    intensity(
+      "Selection intensity",
+      "By how many standard deviations the mean fitness of the picked organisms exceeds the mean fitness of all " +
+        "organisms.",
+      standard_scores(comparison.fitness)),
+    ...(
+      selection.pressure === "rank" ?
+        [intensity(
+          "Intensity, normal fitness",
+          "The selection intensity if the fitness had a normal distribution: it would depend only on the ranks.",
+          normal_scores(population))] :
+        []),
+    {
+      name: "Share not selected",
+      unit: "",
+      source: "Motoki 2002",
+      sentence: "The share of organisms that are never picked; genes that only these organisms had are lost.",
+      expected: sum(comparison.unpicked_chance) / population,
+      observed: comparison.copies.filter((copies) => copies === 0).length / population,
+      standard_error: error_of_unpicked(selection, comparison),
+    },
+    {
+      name: "Loss of diversity",
+      unit: "",
+      source: "Blickle & Thiele 1996",
+      sentence: "The share of the population that copies of fitter organisms replace if every organism has its " +
+        "expected number of copies: the least possible loss.",
+      expected: loss_of_diversity(comparison.expected),
+      observed: null,
+      standard_error: null,
+    },
+    {
+      name: "Takeover time",
+      unit: "generations",
+      source: "Goldberg & Deb 1991",
+      expected: takeover,
+      observed: null,
+      standard_error: null,
+      sentence: selection.overlapping ?
+        "Generations until copies of the fittest fill all places but one; not predicted if most of a generation " +
+          "survives." :
+        takeover !== null ?
+        "Generations of selection alone, without mutation and crossover, until copies of the fittest fill all " +
+          "places but one." :
+        selection.pressure !== "rank" ?
+        "Generations until copies of the fittest fill all places but one; not predicted if each generation " +
+          "subtracts its lowest fitness, or if all fitness values are equal." :
+        "Generations until copies of the fittest fill all places but one: never, because every organism has the same " +
+          "chance.",
+    }
+  ];
   return selection.independent_picks ? [...all, agreement(selection, comparison)] : all;
 }

@@ -1,5 +1,5 @@
 // Tournament: the contestants and winners of the tournament that led to one pick. No DOM.
-import type { BreedingRecord } from "./record";
+import type {BreedingRecord} from "./record";
 
 export interface Contestant {
   organism: number;
@@ -15,16 +15,16 @@ export function contestants_of(record: BreedingRecord, index: number): Contestan
   if (pick?.tournament === undefined) {
     return [];
   }
-  const contestants: Contestant[] = (pick.contestants ?? [])
-    .map((organism: number) => ({ organism, won: false, picked_now: false }));
+  const contestants: Contestant[] =
+    (pick.contestants ?? []).map((organism: number) => ({organism, won: false, picked_now: false}));
   const same = (i: number): boolean => record.picks[i]?.tournament === pick.tournament;
   let first = index;
   while (first > 0 && same(first - 1)) {
     --first;
   }
   for (let i = first; same(i); ++i) {
-    const winner = contestants
-      .find((contestant) => !contestant.won && contestant.organism === (record.picks[i]!.organism ?? 0));
+    const winner =
+      contestants.find((contestant) => !contestant.won && contestant.organism === (record.picks[i]!.organism ?? 0));
     if (winner) {
       winner.won = true;
       winner.picked_now = i === index;

@@ -1,8 +1,8 @@
 // Wheel layout: the slots of a selection wheel as arcs to draw. Neighbouring slots that are too narrow are merged. No
 // DOM.
-import type { Message } from "../messages";
-import { type Colour, ramp_at } from "../render/look";
-import { rank_of } from "./record";
+import type {Message} from "../core/messages";
+import {type Colour, ramp_at} from "../render/look";
+import {rank_of} from "./record";
 
 export interface Arc {
   begin: number; // in turns from the top, clockwise, 0 to 1
@@ -30,7 +30,7 @@ export function wheel_arcs(contenders: readonly Message[], turns_min: number): A
       last.end = end;
       last.last = organism;
     } else {
-      arcs.push({ begin, end, first: organism, last: organism, rank: rank_of(contender) });
+      arcs.push({begin, end, first: organism, last: organism, rank: rank_of(contender)});
     }
     const newest = arcs[arcs.length - 1]!;
     open = width < turns_min && newest.end - newest.begin < turns_min;
@@ -39,9 +39,9 @@ export function wheel_arcs(contenders: readonly Message[], turns_min: number): A
 }
 
 /** The point of a circle at an angle in turns from the top, clockwise. */
-export function point_at(centre: number, radius: number, turns: number): { x: number; y: number } {
+export function point_at(centre: number, radius: number, turns: number): {x: number; y: number} {
   const angle = (turns - 0.25) * 2 * Math.PI;
-  return { x: centre + radius * Math.cos(angle), y: centre + radius * Math.sin(angle) };
+  return {x: centre + radius * Math.cos(angle), y: centre + radius * Math.sin(angle)};
 }
 
 /** The outline of a part of a ring as an SVG path. */
@@ -49,7 +49,7 @@ export function ring_path(centre: number, inner: number, outer: number, begin: n
   const stop = Math.min(end, begin + 0.99999); // an arc of a full turn would have no length
   const large = stop - begin > 0.5 ? 1 : 0;
   const at = (radius: number, turns: number): string => {
-    const { x, y } = point_at(centre, radius, turns);
+    const {x, y} = point_at(centre, radius, turns);
     return `${x.toFixed(2)} ${y.toFixed(2)}`;
   };
   return `M${at(outer, begin)}A${outer} ${outer} 0 ${large} 1 ${at(outer, stop)}L${at(inner, stop)}A${inner} ` +
@@ -64,7 +64,7 @@ export function rank_colour(rank: number, contender_count: number): Colour {
 
 /** Black or white, whichever is easier to read on this colour. */
 export function text_on(colour: Colour): string {
-  const linear = (part: number): number => part / 255 <= 0.04045 ? part / 255 / 12.92
-    : ((part / 255 + 0.055) / 1.055) ** 2.4;
+  const linear = (part: number): number =>
+    part / 255 <= 0.04045 ? part / 255 / 12.92 : ((part / 255 + 0.055) / 1.055) ** 2.4;
   return 0.2126 * linear(colour[0]) + 0.7152 * linear(colour[1]) + 0.0722 * linear(colour[2]) > 0.179 ? "#000" : "#fff";
 }

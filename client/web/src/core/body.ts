@@ -1,7 +1,7 @@
 // Body: reads the numbers in the body of a snapshot, one after another, in the layout that stream.proto describes.
 //
 // It checks everything and throws only DamagedData. Columns may point into memory that the next column overwrites.
-import { DamagedData } from "./errors";
+import {DamagedData} from "./errors";
 
 const with_exceptions = 128; // flag in the width of a column
 
@@ -17,44 +17,48 @@ function u32_at(bytes: Uint8Array, at: number): number {
 }
 
 export class BodyReader {
-  private at = 0;
+  #at = 0;
 
-  constructor(private readonly bytes: Uint8Array) {}
+  readonly #bytes: Uint8Array;
 
-  rest_bytes(): number {
-    return this.bytes.length - this.at;
+  constructor(bytes: Uint8Array) {
+    this.#bytes = bytes;
   }
 
-  private take(count: number): number {
-    if (count > this.bytes.length - this.at) {
+  rest_bytes(): number {
+    return this.#bytes.length - this.#at;
+  }
+
+  #take(count: number): number {
+    if (count > this.#bytes.length - this.#at) {
       throw new DamagedData("a snapshot's body ends too early");
     }
-    this.at += count;
-    return this.at - count;
+    this.#at += count;
+    return this.#at - count;
   }
 
   u8(): number {
-    return this.bytes[this.take(1)];
+    return this.#bytes[this.#take(1)];
   }
 
   u16(): number {
-    const at = this.take(2);
-    return this.bytes[at] | this.bytes[at + 1] << 8;
+    const at = this.#take(2);
+    return this.#bytes[at] | this.#bytes[at + 1] << 8;
   }
 
   u32(): number {
-    return u32_at(this.bytes, this.take(4));
+    return u32_at(this.#bytes, this.#take(4));
   }
 
   end(): void {
-    if (this.at !== this.bytes.length) {
+    if (this.#at !== this.#bytes.length) {
       throw new DamagedData("a snapshot's body has surplus bytes at its end");
     }
   }
 
   /** Reads `count` numbers in planes of bytes, the lowest byte of every number first. width: 1, 2 or 4. */
-  planes(count: number, width: number, to: Int32Array | Uint8Array): void {
-    const at = this.take(count * width), bytes = this.bytes;
+  planes(count: number, width: number, to: Int32Array|Uint8Array): void {
+    const at = this.#take(count * width), bytes = this.#bytes;
     if (width === 1) {
       to.set(bytes.subarray(at, at + count));
     } else if (width === 2) {
@@ -64,7 +68,7 @@ export class BodyReader {
     } else {
       for (let i = 0; i < count; ++i) {
         to[i] = bytes[at + i] | bytes[at + count + i] << 8 | bytes[at + 2 * count + i] << 16 |
-                bytes[at + 3 * count + i] << 24;
+          bytes[at + 3 * count + i] << 24;
       }
     }
   }
@@ -76,13 +80,13 @@ export class BodyReader {
     let exceptions = 0, indices_at = 0, values_at = 0;
     if (width_and_flag & with_exceptions) {
       exceptions = this.u32();
-      indices_at = this.take(4 * exceptions);
-      values_at = this.take(4 * exceptions);
+      indices_at = this.#take(4 * exceptions);
+      values_at = this.#take(4 * exceptions);
     }
     if (width !== 0 && width !== 1 && width !== 2 && width !== 4) {
       throw new DamagedData(`a snapshot's body has a column of width ${width}, not 0, 1, 2 or 4`);
     }
-    const at = this.take(count * width), bytes = this.bytes;
+    const at = this.#take(count * width), bytes = this.#bytes;
     if (column_space.length < count) {
       column_space = new Int32Array(Math.max(count, 2 * column_space.length));
     }

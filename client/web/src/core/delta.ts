@@ -7,26 +7,26 @@
 //              has come or gone. After DamagedData the baseline must not be used again.
 // Bounds       Memory is bounded by the length of the body and of the baseline, not by the counts that a message
 //              states.
-import { BodyReader } from "./body";
-import { DamagedData } from "./errors";
+import {BodyReader} from "./body";
+import {DamagedData} from "./errors";
 
 const some_are_gone = 1, some_have_come = 2, have_headings = 4; // flags in the parts of a section
 
 /** The entities of one kind. Absent columns are null. */
 export interface Section {
   count: number;
-  id: Uint32Array | null;
+  id: Uint32Array|null;
   x: Int32Array;
   y: Int32Array;
-  width: Int32Array | null; // radius, or half width
-  height: Int32Array | null; // health, or half height
-  heading: Uint8Array | null;
-  dx: Int32Array | null; // movement since the previous snapshot; 0 for new entities
-  dy: Int32Array | null;
+  width: Int32Array|null; // radius, or half width
+  height: Int32Array|null; // health, or half height
+  heading: Uint8Array|null;
+  dx: Int32Array|null; // movement since the previous snapshot; 0 for new entities
+  dy: Int32Array|null;
 }
 
 export interface Kind {
-  name: "organisms" | "food" | "poison" | "crates" | "obstacles";
+  name: "organisms"|"food"|"poison"|"crates"|"obstacles";
   has_ids: boolean; // on a whole island; in a tile all kinds have ids
   moves: boolean;
   has_sizes: boolean;
@@ -35,11 +35,11 @@ export interface Kind {
 
 /** In the order of all encodings. */
 export const kinds: readonly Kind[] = [
-  { name: "organisms", has_ids: true, moves: true, has_sizes: true, has_health: true },
-  { name: "food", has_ids: true, moves: false, has_sizes: false, has_health: false },
-  { name: "poison", has_ids: true, moves: false, has_sizes: false, has_health: false },
-  { name: "crates", has_ids: false, moves: true, has_sizes: true, has_health: false },
-  { name: "obstacles", has_ids: false, moves: false, has_sizes: true, has_health: false },
+  {name: "organisms", has_ids: true, moves: true, has_sizes: true, has_health: true},
+  {name: "food", has_ids: true, moves: false, has_sizes: false, has_health: false},
+  {name: "poison", has_ids: true, moves: false, has_sizes: false, has_health: false},
+  {name: "crates", has_ids: false, moves: true, has_sizes: true, has_health: false},
+  {name: "obstacles", has_ids: false, moves: false, has_sizes: true, has_health: false},
 ];
 
 /** The data from which the next snapshot is predicted. */
@@ -53,16 +53,25 @@ const no_numbers = new Int32Array(0);
 
 function empty_section(kind: Kind, has_ids: boolean): Section {
   const numbers = kind.moves ? no_numbers : null, sizes = kind.has_sizes ? no_numbers : null;
-  return { count: 0, id: has_ids ? new Uint32Array(0) : null, x: no_numbers, y: no_numbers, width: sizes, height: sizes,
-           heading: null, dx: numbers, dy: numbers };
+  return {
+    count: 0,
+    id: has_ids ? new Uint32Array(0) : null,
+    x: no_numbers,
+    y: no_numbers,
+    width: sizes,
+    height: sizes,
+    heading: null,
+    dx: numbers,
+    dy: numbers
+  };
 }
 
 /** Decodes a body.
  *
  *  counts  the numbers of entities that the message states, in the order of `kinds`.
  *  base    the baseline of a delta, which must not be used afterwards; null for a keyframe. */
-export function decode_body(body: Uint8Array, counts: number[], position_bytes: number, of_tile: boolean,
-                            base: Baseline | null): Baseline {
+export function decode_body(
+  body: Uint8Array, counts: number[], position_bytes: number, of_tile: boolean, base: Baseline|null): Baseline {
   if (base !== null && base.position_bytes !== position_bytes) {
     throw new DamagedData("a snapshot's position_bytes differ from those of its base");
   }
@@ -74,11 +83,12 @@ export function decode_body(body: Uint8Array, counts: number[], position_bytes: 
     return read_section(kind, has_ids, reader, before, counts[k], position_bytes, ticks, base_ticks);
   });
   reader.end();
-  return { ticks: base === null || ticks > 0 ? ticks : base.ticks, position_bytes, sections };
+  return {ticks: base === null || ticks > 0 ? ticks : base.ticks, position_bytes, sections};
 }
 
-function read_section(kind: Kind, has_ids: boolean, reader: BodyReader, base: Section, count: number,
-                      position_bytes: number, ticks: number, base_ticks: number): Section {
+function read_section(
+  kind: Kind, has_ids: boolean, reader: BodyReader, base: Section, count: number, position_bytes: number, ticks: number,
+  base_ticks: number): Section {
   const parts = reader.u8(), parts_max = kind.has_health ? 7 : 3; // only organisms have headings
   if (parts > parts_max) {
     throw new DamagedData(`a snapshot's body has parts ${parts}, not 0 to ${parts_max}`);
@@ -101,7 +111,7 @@ function read_section(kind: Kind, has_ids: boolean, reader: BodyReader, base: Se
     throw new DamagedData(`a snapshot has ${whole} ${kind.name}, not ${count} as its count says`);
   }
   if (stayed > 0 && (kind.moves || headings)) {
-    section = { ...section };
+    section = {...section};
     if (kind.moves) {
       section.x = moved(reader.column(stayed), section.x, section.dx!, stayed, ticks, base_ticks, position_bytes);
       section.y = moved(reader.column(stayed), section.y, section.dy!, stayed, ticks, base_ticks, position_bytes);
@@ -116,8 +126,9 @@ function read_section(kind: Kind, has_ids: boolean, reader: BodyReader, base: Se
   return come === null || come.count === 0 ? section : stayed === 0 ? come : merged(section, come);
 }
 
-function read_come(kind: Kind, has_ids: boolean, headings: boolean, reader: BodyReader, count_max: number,
-                   position_bytes: number): Section {
+function read_come(
+  kind: Kind, has_ids: boolean, headings: boolean, reader: BodyReader, count_max: number,
+  position_bytes: number): Section {
   const count = reader.u32();
   // Each entity needs at least the bytes of its position, so the remaining bytes limit the memory that is allocated.
   if (count > count_max || count * 2 * position_bytes > reader.rest_bytes()) {
@@ -131,22 +142,23 @@ function read_come(kind: Kind, has_ids: boolean, headings: boolean, reader: Body
   const id = has_ids ? reader.rising_column(count, 2 ** 32) : null;
   const x = planes(position_bytes), y = planes(position_bytes);
   const width = kind.has_sizes ? planes(2) : null, height = kind.has_sizes ? planes(2) : null;
-  let heading: Uint8Array | null = null;
+  let heading: Uint8Array|null = null;
   if (headings) {
     heading = new Uint8Array(count);
     reader.planes(count, 1, heading);
   }
   const dx = kind.moves ? reader.column(count).slice(0, count) : null;
   const dy = kind.moves ? reader.column(count).slice(0, count) : null;
-  return { count, id, x, y, width, height, heading, dx, dy };
+  return {count, id, x, y, width, height, heading, dx, dy};
 }
 
 /** Returns the new positions, and replaces the displacements unless ticks is 0.
  *
  *  The prediction is the displacement times `ticks` divided by `base_ticks`, rounded down. The product is at most 2^47
  *  and base_ticks is below 2^16, so the floating-point quotient is never rounded up to the next whole number. */
-function moved(residuals: Int32Array, positions: Int32Array, displacements: Int32Array, count: number, ticks: number,
-               base_ticks: number, position_bytes: number): Int32Array {
+function moved(
+  residuals: Int32Array, positions: Int32Array, displacements: Int32Array, count: number, ticks: number,
+  base_ticks: number, position_bytes: number): Int32Array {
   const to = new Int32Array(count);
   let bits = 0; // all positions, combined with OR
   if (ticks === base_ticks) {
@@ -200,16 +212,24 @@ function turned(differences: Int32Array, headings: Uint8Array, count: number): U
 
 /** Returns the section with the columns that numbers() and bytes() make of its columns. Ids pass as the Int32Array of
  *  the same bits. */
-function with_columns(section: Section, count: number,
-                      numbers: (column: Int32Array, name: keyof Section) => Int32Array,
-                      bytes: (column: Uint8Array) => Uint8Array): Section {
-  const of = (name: "width" | "height" | "dx" | "dy") => {
+function with_columns(
+  section: Section, count: number, numbers: (column: Int32Array, name: keyof Section) => Int32Array,
+  bytes: (column: Uint8Array) => Uint8Array): Section {
+  const of = (name: "width"|"height"|"dx"|"dy") => {
     const column = section[name];
     return column === null ? null : numbers(column, name);
   };
-  return { count, id: section.id === null ? null : as_uint32(numbers(as_int32(section.id), "id")),
-           x: numbers(section.x, "x"), y: numbers(section.y, "y"), width: of("width"), height: of("height"),
-           heading: section.heading === null ? null : bytes(section.heading), dx: of("dx"), dy: of("dy") };
+  return {
+    count,
+    id: section.id === null ? null : as_uint32(numbers(as_int32(section.id), "id")),
+    x: numbers(section.x, "x"),
+    y: numbers(section.y, "y"),
+    width: of("width"),
+    height: of("height"),
+    heading: section.heading === null ? null : bytes(section.heading),
+    dx: of("dx"),
+    dy: of("dy")
+  };
 }
 
 export function as_int32(column: Uint32Array): Int32Array {
@@ -223,8 +243,8 @@ export function as_uint32(column: Int32Array): Uint32Array {
 /** Returns the section without the entities at `gone`, which are rising. */
 function without(section: Section, gone: Uint32Array): Section {
   const count = section.count - gone.length;
-  const kept = with_columns(section, count, (column) => numbers_without(column, gone, count),
-                            (column) => bytes_without(column, gone, count));
+  const kept = with_columns(
+    section, count, (column) => numbers_without(column, gone, count), (column) => bytes_without(column, gone, count));
   if (count === 0) {
     kept.heading = null; // the next organisms may have headings or not
   }
@@ -259,8 +279,9 @@ function bytes_without(column: Uint8Array, gone: Uint32Array, count: number): Ui
 function merged(stayed: Section, come: Section): Section {
   const places = places_of(stayed, come);
   const added = (name: keyof Section) => name === "id" ? as_int32(come.id!) : come[name] as Int32Array;
-  return with_columns(stayed, stayed.count + come.count, (column, name) => merged_numbers(column, added(name), places),
-                      (column) => merged_bytes(column, come.heading!, places));
+  return with_columns(
+    stayed, stayed.count + come.count, (column, name) => merged_numbers(column, added(name), places),
+    (column) => merged_bytes(column, come.heading!, places));
 }
 
 /** Returns for each entity of `come` the index in `stayed` before which it is inserted. */

@@ -16,7 +16,7 @@ export class SessionEnded extends InvalidMessage {
   override name = "SessionEnded";
 
   /** status: the Status with which the server would refuse the request; null: there is no session at present. */
-  constructor(message: string, readonly status: { code: string; reason: string; message: string } | null) {
+  constructor(message: string, readonly status: {code: string; reason: string; message: string}|null) {
     super(message);
   }
 }

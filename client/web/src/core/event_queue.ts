@@ -2,13 +2,17 @@
 //
 // A world without bodies can end thousands of generations per second. If the page is slower than the server, the queue drops events about the
 // progress of the simulation and adds an EventsDropped, so its memory stays bounded; events about clients are never dropped.
-import type { Message } from "../messages";
+import type {Message} from "./messages";
 
 export class EventQueue {
   #events: Message[] = [];
 
   /** most: more events than these make the queue drop. */
-  constructor(private readonly most: number) {}
+  readonly #most: number;
+
+  constructor(most: number) {
+    this.#most = most;
+  }
 
   get is_empty(): boolean {
     return this.#events.length === 0;
@@ -16,16 +20,17 @@ export class EventQueue {
 
   push(event: Message): void {
     this.#events.push(event);
-    if (this.#events.length <= this.most) {
+    if (this.#events.length <= this.#most) {
       return;
     }
     let dropped = 0;
     this.#events = this.#events.filter((one) => {
-      const drops = one.generation_finished !== undefined || one.migration !== undefined || one.events_dropped !== undefined;
+      const drops =
+        one.generation_finished !== undefined || one.migration !== undefined || one.events_dropped !== undefined;
       dropped += one.events_dropped ? Number(one.events_dropped.dropped_count ?? 0) : drops ? 1 : 0;
       return !drops;
     });
-    this.#events.push({ events_dropped: { dropped_count: dropped } });
+    this.#events.push({events_dropped: {dropped_count: dropped}});
   }
 
   /** Returns all events and empties the queue. */

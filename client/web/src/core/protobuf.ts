@@ -7,8 +7,8 @@
 // The reader accepts what Google's C++ parser accepts: packed and unpacked fields, unknown fields and fields of another
 // wire type (skipped), parts of one message in several pieces (merged). It throws DamagedData for everything else. Its
 // memory is bounded by the number of bytes it reads.
-import type { Message, RequestRules } from "../messages";
-import { DamagedData, InvalidMessage } from "./errors";
+import type {Message, RequestRules} from "./messages";
+import {DamagedData, InvalidMessage} from "./errors";
 
 const depth_max = 100; // levels of nested messages and groups
 
@@ -18,8 +18,10 @@ const MESSAGE = 11, BYTES = 12, UINT32 = 13, ENUM = 14, SFIXED32 = 15, SFIXED64 
 
 const VARINT = 0, EIGHT_BYTES = 1, LENGTH = 2, GROUP = 3, END_GROUP = 4, FOUR_BYTES = 5; // wire types
 
-const wire_type_of = [-1, EIGHT_BYTES, FOUR_BYTES, VARINT, VARINT, VARINT, EIGHT_BYTES, FOUR_BYTES, VARINT, LENGTH, -1,
-                      LENGTH, LENGTH, VARINT, VARINT, FOUR_BYTES, EIGHT_BYTES, VARINT, VARINT];
+const wire_type_of = [
+  -1, EIGHT_BYTES, FOUR_BYTES, VARINT, VARINT, VARINT, EIGHT_BYTES, FOUR_BYTES, VARINT, LENGTH, -1, LENGTH, LENGTH,
+  VARINT, VARINT, FOUR_BYTES, EIGHT_BYTES, VARINT, VARINT
+];
 
 export interface EnumType {
   name: string;
@@ -33,9 +35,9 @@ export interface Field {
   type: number; // FieldDescriptorProto.Type
   repeated: boolean;
   has_presence: boolean; // the value 0 differs from an absent field
-  oneof: Field[] | null; // all fields of its oneof
-  message: MessageType | null;
-  values: EnumType | null;
+  oneof: Field[]|null; // all fields of its oneof
+  message: MessageType|null;
+  values: EnumType|null;
   /** The field's options, with extensions by name, such as `rules`. */
   options: Message;
 }
@@ -52,18 +54,21 @@ export interface MessageType {
 // The parts of google/protobuf/descriptor.proto that describe other messages: name, number, type, repeated, message.
 // FieldOptions are read as bytes, because their extensions are known only after the descriptor set is.
 type BootstrapField = [name: string, number: number, type: number, repeated?: boolean, message?: string];
-const bootstrap: { [message: string]: BootstrapField[] } = {
+const bootstrap: {[message: string]: BootstrapField[]} = {
   FileDescriptorSet: [["file", 1, MESSAGE, true, "FileDescriptorProto"]],
-  FileDescriptorProto: [["name", 1, STRING], ["package", 2, STRING],
-                        ["message_type", 4, MESSAGE, true, "DescriptorProto"],
-                        ["enum_type", 5, MESSAGE, true, "EnumDescriptorProto"],
-                        ["extension", 7, MESSAGE, true, "FieldDescriptorProto"], ["syntax", 12, STRING]],
-  DescriptorProto: [["name", 1, STRING], ["field", 2, MESSAGE, true, "FieldDescriptorProto"],
-                    ["nested_type", 3, MESSAGE, true, "DescriptorProto"],
-                    ["enum_type", 4, MESSAGE, true, "EnumDescriptorProto"]],
-  FieldDescriptorProto: [["name", 1, STRING], ["extendee", 2, STRING], ["number", 3, INT32], ["label", 4, INT32],
-                         ["type", 5, INT32], ["type_name", 6, STRING], ["options", 8, BYTES], ["oneof_index", 9, INT32],
-                         ["proto3_optional", 17, BOOL]],
+  FileDescriptorProto: [
+    ["name", 1, STRING], ["package", 2, STRING], ["message_type", 4, MESSAGE, true, "DescriptorProto"],
+    ["enum_type", 5, MESSAGE, true, "EnumDescriptorProto"], ["extension", 7, MESSAGE, true, "FieldDescriptorProto"],
+    ["syntax", 12, STRING]
+  ],
+  DescriptorProto: [
+    ["name", 1, STRING], ["field", 2, MESSAGE, true, "FieldDescriptorProto"],
+    ["nested_type", 3, MESSAGE, true, "DescriptorProto"], ["enum_type", 4, MESSAGE, true, "EnumDescriptorProto"]
+  ],
+  FieldDescriptorProto: [
+    ["name", 1, STRING], ["extendee", 2, STRING], ["number", 3, INT32], ["label", 4, INT32], ["type", 5, INT32],
+    ["type_name", 6, STRING], ["options", 8, BYTES], ["oneof_index", 9, INT32], ["proto3_optional", 17, BOOL]
+  ],
   EnumDescriptorProto: [["name", 1, STRING], ["value", 2, MESSAGE, true, "EnumValueDescriptorProto"]],
   EnumValueDescriptorProto: [["name", 1, STRING], ["number", 2, INT32]],
 };
@@ -71,13 +76,21 @@ const bootstrap: { [message: string]: BootstrapField[] } = {
 function bootstrap_types(): Map<string, MessageType> {
   const types = new Map<string, MessageType>();
   for (const name of Object.keys(bootstrap)) {
-    types.set(name, { name, fields: [], by_number: new Map(), by_name: new Map() });
+    types.set(name, {name, fields: [], by_number: new Map(), by_name: new Map()});
   }
   for (const [name, fields] of Object.entries(bootstrap)) {
     for (const [field, number, type, repeated, message] of fields) {
-      add_field(types.get(name)!, { name: field, number, type, repeated: repeated === true, has_presence: true,
-                                    oneof: null, message: message === undefined ? null : types.get(message)!,
-                                    values: null, options: {} });
+      add_field(types.get(name)!, {
+        name: field,
+        number,
+        type,
+        repeated: repeated === true,
+        has_presence: true,
+        oneof: null,
+        message: message === undefined ? null : types.get(message)!,
+        values: null,
+        options: {}
+      });
     }
   }
   return types;
@@ -94,23 +107,23 @@ const label_repeated = 3;
 
 /** The message types of a FileDescriptorSet. */
 export class Schema {
-  private readonly types = new Map<string, MessageType>();
-  private readonly enums = new Map<string, EnumType>();
+  readonly #types = new Map<string, MessageType>();
+  readonly #enums = new Map<string, EnumType>();
 
   /** descriptor: a serialised google.protobuf.FileDescriptorSet that contains every file that it imports. */
   constructor(descriptor: Uint8Array) {
     const files: Message[] = read(bootstrap_types().get("FileDescriptorSet")!, descriptor).file ?? [];
     for (const file of files) {
-      this.add_names(file, file.package ?? "", file.message_type ?? []);
+      this.#add_names(file, file.package ?? "", file.message_type ?? []);
     }
     const with_options: [Field, Uint8Array][] = [];
     for (const file of files) {
       const proto3 = file.syntax === "proto3";
-      this.each_message(file.package ?? "", file.message_type ?? [], (name, message) => {
-        const type = this.types.get(name)!;
+      this.#each_message(file.package ?? "", file.message_type ?? [], (name, message) => {
+        const type = this.#types.get(name)!;
         const oneofs = new Map<number, Field[]>();
         for (const description of message.field ?? []) {
-          const field = this.field_of(description, proto3);
+          const field = this.#field_of(description, proto3);
           if (description.oneof_index !== undefined && !description.proto3_optional) {
             field.oneof = oneofs.get(description.oneof_index) ?? [];
             field.oneof.push(field);
@@ -123,13 +136,13 @@ export class Schema {
     }
     for (const file of files) {
       for (const description of file.extension ?? []) {
-        const extended = this.types.get((description.extendee ?? "").replace(/^\./, ""));
+        const extended = this.#types.get((description.extendee ?? "").replace(/^\./, ""));
         if (extended !== undefined) {
-          add_field(extended, this.field_of(description, false));
+          add_field(extended, this.#field_of(description, false));
         }
       }
     }
-    const field_options = this.types.get("google.protobuf.FieldOptions");
+    const field_options = this.#types.get("google.protobuf.FieldOptions");
     for (const [field, options] of with_options) {
       if (field_options !== undefined && options.length > 0) {
         field.options = read(field_options, options);
@@ -139,7 +152,7 @@ export class Schema {
 
   /** Returns a message type. Throws InvalidMessage if there is none of this name. */
   type(name: string): MessageType {
-    const type = this.types.get(name);
+    const type = this.#types.get(name);
     if (type === undefined) {
       throw new InvalidMessage(`the server's protocol has no message ${name}`);
     }
@@ -148,7 +161,7 @@ export class Schema {
 
   /** Returns the names of an enum in the order of their numbers; empty if there is no such enum. */
   enum_names(name: string): string[] {
-    const numbers = this.enums.get(name)?.numbers ?? new Map<string, number>();
+    const numbers = this.#enums.get(name)?.numbers ?? new Map<string, number>();
     return [...numbers].sort((a, b) => a[1] - b[1]).map(([value]) => value);
   }
 
@@ -164,58 +177,69 @@ export class Schema {
   request_rules(): Map<string, RequestRules> {
     const rules = new Map<string, RequestRules>();
     for (const field of this.type("evod.v1.Request").fields) {
-      const option: Message | undefined = field.options.rules;
+      const option: Message|undefined = field.options.rules;
       if (option !== undefined) {
-        rules.set(field.name, { kind: String(option.kind ?? "REQUEST_KIND_UNSPECIFIED"),
-                                role: String(option.role ?? "ROLE_UNSPECIFIED"),
-                                viewer_in_own_replay: option.viewer_in_own_replay ?? false,
-                                answer: option.answer ?? "" });
+        rules.set(field.name, {
+          kind: String(option.kind ?? "REQUEST_KIND_UNSPECIFIED"),
+          role: String(option.role ?? "ROLE_UNSPECIFIED"),
+          viewer_in_own_replay: option.viewer_in_own_replay ?? false,
+          answer: option.answer ?? ""
+        });
       }
     }
     return rules;
   }
 
-  private add_names(file: Message, prefix: string, messages: Message[]): void {
+  #add_names(file: Message, prefix: string, messages: Message[]): void {
     const add_enums = (scope: string, enums: Message[]) => {
       for (const description of enums) {
         const name = join(scope, description.name ?? "");
-        const values: EnumType = { name, names: new Map(), numbers: new Map() };
+        const values: EnumType = {name, names: new Map(), numbers: new Map()};
         for (const value of description.value ?? []) {
           if (!values.names.has(value.number ?? 0)) { // the first name of a number is the usual one
             values.names.set(value.number ?? 0, value.name ?? "");
           }
           values.numbers.set(value.name ?? "", value.number ?? 0);
         }
-        this.enums.set(name, values);
+        this.#enums.set(name, values);
       }
     };
     add_enums(prefix, file.enum_type ?? []);
-    this.each_message(prefix, messages, (name, message) => {
-      this.types.set(name, { name, fields: [], by_number: new Map(), by_name: new Map() });
+    this.#each_message(prefix, messages, (name, message) => {
+      this.#types.set(name, {name, fields: [], by_number: new Map(), by_name: new Map()});
       add_enums(name, message.enum_type ?? []);
     });
   }
 
-  private each_message(scope: string, messages: Message[], what: (name: string, message: Message) => void): void {
+  #each_message(scope: string, messages: Message[], what: (name: string, message: Message) => void): void {
     for (const message of messages) {
       const name = join(scope, message.name ?? "");
       what(name, message);
-      this.each_message(name, message.nested_type ?? [], what);
+      this.#each_message(name, message.nested_type ?? [], what);
     }
   }
 
-  private field_of(description: Message, proto3: boolean): Field {
+  #field_of(description: Message, proto3: boolean): Field {
     const name: string = description.name ?? "", type: number = description.type ?? 0;
     const type_name = (description.type_name ?? "").replace(/^\./, "");
-    const message = type === MESSAGE ? this.types.get(type_name) ?? null : null;
-    const values = type === ENUM ? this.enums.get(type_name) ?? null : null;
+    const message = type === MESSAGE ? this.#types.get(type_name) ?? null : null;
+    const values = type === ENUM ? this.#enums.get(type_name) ?? null : null;
     const is_known = type === MESSAGE ? message !== null : type === ENUM ? values !== null : wire_type_of[type] >= 0;
     if (!is_known) {
       throw new DamagedData(`the descriptor of the field ${name} has the type ${type} ${type_name}, which is unknown`);
     }
     const repeated = description.label === label_repeated;
-    return { name, number: description.number ?? 0, type, repeated, oneof: null, message, values, options: {},
-             has_presence: !proto3 || type === MESSAGE || description.oneof_index !== undefined };
+    return {
+      name,
+      number: description.number ?? 0,
+      type,
+      repeated,
+      oneof: null,
+      message,
+      values,
+      options: {},
+      has_presence: !proto3 || type === MESSAGE || description.oneof_index !== undefined
+    };
   }
 }
 
@@ -225,25 +249,25 @@ function join(scope: string, name: string): string {
 
 // ---- reading -------------------------------------------------------------------------------------------------------
 
-const decoder = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true });
+const decoder = new TextDecoder("utf-8", {fatal: true, ignoreBOM: true});
 
 class Reader {
   at = 0;
   end: number; // of the innermost message
-  private readonly view: DataView;
-  private low = 0; // of the last varint
-  private high = 0;
+  readonly #view: DataView;
+  #low = 0; // of the last varint
+  #high = 0;
 
   constructor(readonly bytes: Uint8Array) {
     this.end = bytes.length;
-    this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    this.#view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   }
 
   /** Reads a varint into low and high, both unsigned. */
-  private varint(): void {
+  #varint(): void {
     const bytes = this.bytes, end = this.end;
     let at = this.at, low = 0, high = 0;
-    for (let shift = 0; ; shift += 7) {
+    for (let shift = 0;; shift += 7) {
       if (at >= end || shift > 63) {
         throw new DamagedData(at >= end ? "a message ends within a number" : "a number has more than 10 bytes");
       }
@@ -261,30 +285,30 @@ class Reader {
       }
     }
     this.at = at;
-    this.low = low >>> 0;
-    this.high = high >>> 0;
+    this.#low = low >>> 0;
+    this.#high = high >>> 0;
   }
 
   uint32(): number {
-    this.varint();
-    return this.low;
+    this.#varint();
+    return this.#low;
   }
 
   tag(): number {
-    this.varint();
-    if (this.high !== 0 || this.low < 8) {
+    this.#varint();
+    if (this.#high !== 0 || this.#low < 8) {
       throw new DamagedData("a message has an invalid field number");
     }
-    return this.low;
+    return this.#low;
   }
 
   /** Reads a length and returns the position after that many bytes. */
   end_of_length(): number {
-    this.varint();
-    if (this.high !== 0 || this.low > this.end - this.at) {
+    this.#varint();
+    if (this.#high !== 0 || this.#low > this.end - this.at) {
       throw new DamagedData("a field is longer than its message");
     }
-    return this.at + this.low;
+    return this.at + this.#low;
   }
 
   /** Returns the position of the next `count` bytes and moves behind them. */
@@ -311,40 +335,60 @@ class Reader {
   }
 
   /** Reads a value of any type but STRING, BYTES and MESSAGE. */
-  scalar(field: Field): number | bigint | boolean | string {
+  scalar(field: Field): number|bigint|boolean|string {
     switch (field.type) {
-      case DOUBLE: return this.view.getFloat64(this.take(8), true);
-      case FLOAT: return this.view.getFloat32(this.take(4), true);
-      case FIXED32: return this.view.getUint32(this.take(4), true);
-      case SFIXED32: return this.view.getInt32(this.take(4), true);
-      case FIXED64: case SFIXED64: {
+      case DOUBLE:
+        return this.#view.getFloat64(this.take(8), true);
+      case FLOAT:
+        return this.#view.getFloat32(this.take(4), true);
+      case FIXED32:
+        return this.#view.getUint32(this.take(4), true);
+      case SFIXED32:
+        return this.#view.getInt32(this.take(4), true);
+      case FIXED64:
+      case SFIXED64: {
         const at = this.take(8);
-        return whole(this.view.getUint32(at, true), this.view.getUint32(at + 4, true), field.type === SFIXED64);
+        return whole(this.#view.getUint32(at, true), this.#view.getUint32(at + 4, true), field.type === SFIXED64);
       }
     }
-    this.varint();
+    this.#varint();
     switch (field.type) {
-      case INT64: return whole(this.low, this.high, true);
-      case UINT64: return whole(this.low, this.high, false);
+      case INT64:
+        return whole(this.#low, this.#high, true);
+      case UINT64:
+        return whole(this.#low, this.#high, false);
       case SINT64: {
-        const sign = -(this.low & 1);
-        return whole(((this.low >>> 1 | this.high << 31) ^ sign) >>> 0, (this.high >>> 1 ^ sign) >>> 0, true);
+        const sign = -(this.#low & 1);
+        return whole(((this.#low >>> 1 | this.#high << 31) ^ sign) >>> 0, (this.#high >>> 1 ^ sign) >>> 0, true);
       }
-      case BOOL: return this.low !== 0 || this.high !== 0;
-      case UINT32: return this.low;
-      case SINT32: return this.low >>> 1 ^ -(this.low & 1);
-      case ENUM: return field.values!.names.get(this.low | 0) ?? (this.low | 0);
-      default: return this.low | 0; // INT32
+      case BOOL:
+        return this.#low !== 0 || this.#high !== 0;
+      case UINT32:
+        return this.#low;
+      case SINT32:
+        return this.#low >>> 1 ^ -(this.#low & 1);
+      case ENUM:
+        return field.values!.names.get(this.#low | 0) ?? (this.#low | 0);
+      default:
+        return this.#low | 0; // INT32
     }
   }
 
   /** Skips the value of a field. */
   skip(number: number, wire_type: number, depth: number): void {
     switch (wire_type) {
-      case VARINT: this.varint(); break;
-      case EIGHT_BYTES: this.take(8); break;
-      case FOUR_BYTES: this.take(4); break;
-      case LENGTH: this.at = this.end_of_length(); break;
+      case VARINT:
+        this.#varint();
+        break;
+      case EIGHT_BYTES:
+        this.take(8);
+        break;
+      case FOUR_BYTES:
+        this.take(4);
+        break;
+      case LENGTH:
+        this.at = this.end_of_length();
+        break;
       case GROUP:
         if (depth === 0) {
           throw new DamagedData(`a message is nested more than ${depth_max} deep`);
@@ -360,13 +404,14 @@ class Reader {
           this.skip(tag >>> 3, tag & 7, depth - 1);
         }
         break;
-      default: throw new DamagedData(`a field has the wire type ${wire_type}, allowed: 0, 1, 2, 3 and 5`);
+      default:
+        throw new DamagedData(`a field has the wire type ${wire_type}, allowed: 0, 1, 2, 3 and 5`);
     }
   }
 }
 
 /** Returns a 64-bit integer as a number if that is exact, otherwise as a bigint. */
-function whole(low: number, high: number, is_signed: boolean): number | bigint {
+function whole(low: number, high: number, is_signed: boolean): number|bigint {
   const top = is_signed ? high | 0 : high;
   if (top >= -0x200000 && top < 0x200000) {
     return top * 0x100000000 + low;
@@ -415,10 +460,12 @@ function read_repeated(reader: Reader, field: Field, values: unknown[], is_packe
 }
 
 /** before: the value of a message so far; later parts are merged into it. */
-function read_value(reader: Reader, field: Field, before: Message | undefined, depth: number): unknown {
+function read_value(reader: Reader, field: Field, before: Message|undefined, depth: number): unknown {
   switch (field.type) {
-    case STRING: return reader.string();
-    case BYTES: return reader.bytes_of_length();
+    case STRING:
+      return reader.string();
+    case BYTES:
+      return reader.bytes_of_length();
     case MESSAGE: {
       if (depth === 0) {
         throw new DamagedData(`a message is nested more than ${depth_max} deep`);
@@ -429,7 +476,8 @@ function read_value(reader: Reader, field: Field, before: Message | undefined, d
       reader.end = outer_end;
       return message;
     }
-    default: return reader.scalar(field);
+    default:
+      return reader.scalar(field);
   }
 }
 
@@ -438,36 +486,36 @@ function read_value(reader: Reader, field: Field, before: Message | undefined, d
 const encoder = new TextEncoder();
 
 class Writer {
-  private data = new Uint8Array(256);
-  private view = new DataView(this.data.buffer);
+  #data = new Uint8Array(256);
+  #view = new DataView(this.#data.buffer);
   length = 0;
 
   /** Makes space for `count` more bytes, moves behind them and returns the position of the first. */
-  private grow(count: number): number {
+  #grow(count: number): number {
     const begin = this.length;
     this.length += count;
-    if (this.length > this.data.length) {
-      const larger = new Uint8Array(Math.max(this.length, 2 * this.data.length));
-      larger.set(this.data);
-      this.data = larger;
-      this.view = new DataView(larger.buffer);
+    if (this.length > this.#data.length) {
+      const larger = new Uint8Array(Math.max(this.length, 2 * this.#data.length));
+      larger.set(this.#data);
+      this.#data = larger;
+      this.#view = new DataView(larger.buffer);
     }
     return begin;
   }
 
   varint(low: number, high = 0): void {
     while (high > 0 || low > 127) {
-      this.data[this.grow(1)] = low & 127 | 128;
+      this.#data[this.#grow(1)] = low & 127 | 128;
       low = (low >>> 7 | high << 25) >>> 0;
       high >>>= 7;
     }
-    this.data[this.grow(1)] = low;
+    this.#data[this.#grow(1)] = low;
   }
 
   bytes(bytes: Uint8Array): void {
     this.varint(bytes.length);
-    const at = this.grow(bytes.length);
-    this.data.set(bytes, at);
+    const at = this.#grow(bytes.length);
+    this.#data.set(bytes, at);
   }
 
   /** Puts the length of the bytes from `begin` on before them. */
@@ -477,8 +525,8 @@ class Writer {
     for (let rest = count >>> 7; rest > 0; rest >>>= 7) {
       ++length_bytes;
     }
-    this.grow(length_bytes);
-    this.data.copyWithin(begin + length_bytes, begin, begin + count);
+    this.#grow(length_bytes);
+    this.#data.copyWithin(begin + length_bytes, begin, begin + count);
     const end = this.length;
     this.length = begin;
     this.varint(count);
@@ -488,13 +536,13 @@ class Writer {
   scalar(field: Field, value: unknown, path: string): void {
     switch (field.type) {
       case DOUBLE: {
-        const at = this.grow(8);
-        this.view.setFloat64(at, number_of(value, path), true);
+        const at = this.#grow(8);
+        this.#view.setFloat64(at, number_of(value, path), true);
         break;
       }
       case FLOAT: {
-        const at = this.grow(4);
-        this.view.setFloat32(at, number_of(value, path), true);
+        const at = this.#grow(4);
+        this.#view.setFloat32(at, number_of(value, path), true);
         break;
       }
       case BOOL:
@@ -508,50 +556,61 @@ class Writer {
         if (number === undefined) {
           throw wrong(path, value, [...field.values!.numbers.keys()].join(", "));
         }
-        this.signed(whole_of(number, path, -0x80000000, 0x7fffffff));
+        this.#signed(whole_of(number, path, -0x80000000, 0x7fffffff));
         break;
       }
-      case UINT32: this.varint(Number(whole_of(value, path, 0, 0xffffffff))); break;
-      case INT32: this.signed(whole_of(value, path, -0x80000000, 0x7fffffff)); break;
-      case UINT64: this.unsigned(whole_of(value, path, 0, 0xffffffffffffffffn)); break;
-      case INT64: this.signed(whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn)); break;
-      case SINT32: case SINT64: {
+      case UINT32:
+        this.varint(Number(whole_of(value, path, 0, 0xffffffff)));
+        break;
+      case INT32:
+        this.#signed(whole_of(value, path, -0x80000000, 0x7fffffff));
+        break;
+      case UINT64:
+        this.#unsigned(whole_of(value, path, 0, 0xffffffffffffffffn));
+        break;
+      case INT64:
+        this.#signed(whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn));
+        break;
+      case SINT32:
+      case SINT64: {
         const bits = field.type === SINT32 ? 32n : 64n;
         const number = BigInt(whole_of(value, path, -(1n << (bits - 1n)), (1n << (bits - 1n)) - 1n));
-        this.unsigned(number < 0n ? -2n * number - 1n : 2n * number);
+        this.#unsigned(number < 0n ? -2n * number - 1n : 2n * number);
         break;
       }
-      case FIXED32: case SFIXED32: {
-        const number = field.type === FIXED32 ? whole_of(value, path, 0, 0xffffffff)
-                                              : whole_of(value, path, -0x80000000, 0x7fffffff);
-        const at = this.grow(4);
-        this.view.setUint32(at, Number(number) >>> 0, true);
+      case FIXED32:
+      case SFIXED32: {
+        const number = field.type === FIXED32 ? whole_of(value, path, 0, 0xffffffff) :
+                                                whole_of(value, path, -0x80000000, 0x7fffffff);
+        const at = this.#grow(4);
+        this.#view.setUint32(at, Number(number) >>> 0, true);
         break;
       }
       default: { // FIXED64, SFIXED64
-        const number = field.type === FIXED64 ? whole_of(value, path, 0, 0xffffffffffffffffn)
-                                              : whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn);
-        const at = this.grow(8);
-        this.view.setBigUint64(at, BigInt.asUintN(64, BigInt(number)), true);
+        const number = field.type === FIXED64 ? whole_of(value, path, 0, 0xffffffffffffffffn) :
+                                                whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn);
+        const at = this.#grow(8);
+        this.#view.setBigUint64(at, BigInt.asUintN(64, BigInt(number)), true);
       }
     }
   }
 
-  private unsigned(value: number | bigint): void {
-    if (typeof value === "number" && Number.isSafeInteger(value)) {
-      this.varint(value >>> 0, Math.floor(value / 0x100000000));
-    } else {
-      this.varint(Number(BigInt(value) & 0xffffffffn), Number(BigInt(value) >> 32n));
-    }
+#unsigned(value: number|bigint) : void {
+  if(typeof value === "number" && Number.isSafeInteger(value)) {
+    this.varint(value >>> 0, Math.floor(value / 0x100000000));
   }
+  else {
+    this.varint(Number(BigInt(value) & 0xffffffffn), Number(BigInt(value) >> 32n));
+  }
+}
 
-  private signed(value: number | bigint): void {
-    this.unsigned(value < 0 ? BigInt.asUintN(64, BigInt(value)) : value);
-  }
+#signed(value: number|bigint) : void {
+this.#unsigned(value < 0 ? BigInt.asUintN(64, BigInt(value)) : value);
+}
 
-  take(): Uint8Array {
-    return this.data.slice(0, this.length);
-  }
+take(): Uint8Array {
+  return this.#data.slice(0, this.length);
+}
 }
 
 function wrong(path: string, got: unknown, allowed: string): InvalidMessage {
@@ -566,7 +625,7 @@ function number_of(value: unknown, path: string): number {
   return value;
 }
 
-function whole_of(value: unknown, path: string, min: number | bigint, max: number | bigint): number | bigint {
+function whole_of(value: unknown, path: string, min: number|bigint, max: number|bigint): number|bigint {
   const is_whole = typeof value === "bigint" || (typeof value === "number" && Number.isInteger(value));
   if (!is_whole || (value as number | bigint) < min || (value as number | bigint) > max) {
     throw wrong(path, value, `a whole number from ${min} to ${max}`);
@@ -601,8 +660,9 @@ function write_fields(writer: Writer, type: MessageType, message: Message, path:
 }
 
 function is_default(field: Field, value: unknown): boolean {
-  return value === 0 ? !Object.is(value, -0) || (field.type !== DOUBLE && field.type !== FLOAT)
-    : value === 0n || value === false || value === "" || (value instanceof Uint8Array && value.length === 0) ||
+  return value === 0 ?
+    !Object.is(value, -0) || (field.type !== DOUBLE && field.type !== FLOAT) :
+    value === 0n || value === false || value === "" || (value instanceof Uint8Array && value.length === 0) ||
       (field.values !== null && field.values.numbers.get(value as string) === 0);
 }
 
@@ -649,6 +709,7 @@ function write_value(writer: Writer, field: Field, value: unknown, path: string,
       writer.insert_length(begin);
       break;
     }
-    default: writer.scalar(field, value, path);
+    default:
+      writer.scalar(field, value, path);
   }
 }

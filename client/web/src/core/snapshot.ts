@@ -11,7 +11,7 @@ export interface Organisms {
   y: Int32Array;
   radius: Int32Array;
   health: Int32Array;
-  heading: Uint8Array | null; // null: the organisms have no headings
+  heading: Uint8Array|null; // null: the organisms have no headings
 }
 
 export interface Items {
@@ -34,8 +34,9 @@ export interface CoarseTile {
   top_px: number;
   width_px: number; // smaller than the side of a tile at the right and lower walls
   height_px: number;
-  dots: { organisms: Dots; food: Dots; poison: Dots; crates: Dots; obstacles: Dots } | null;
-  density: { cells: number; organisms: Int32Array; food: Int32Array; poison: Int32Array } | null; // cells x cells, row after row
+  dots: {organisms: Dots; food: Dots; poison: Dots; crates: Dots; obstacles: Dots}|null;
+  density: {cells: number; organisms: Int32Array; food: Int32Array; poison: Int32Array}|
+    null; // cells x cells, row after row
 }
 
 export interface Dots {
@@ -49,23 +50,23 @@ export interface SnapshotInfo {
   run_id: string; // 32 hexadecimal digits
   island: number;
   island_count: number;
-  sequence: number | bigint;
+  sequence: number|bigint;
   tick: number;
   generation: number;
   generation_tick: number;
   simulated_s: number;
   state: string; // "RUN_STATE_RUNNING"
-  speed: { real_time_factor?: number; max?: boolean } | undefined;
+  speed: {real_time_factor?: number; max?: boolean}|undefined;
   state_hash: string; // 32 hexadecimal digits
   width_px: number;
   height_px: number;
   item_radius_px: number;
   tile_px: number; // side of the tiles; 0: the snapshot has no tiles
-  live: { [field: string]: any } | undefined; // LiveStatistics
+  live: {[field: string]: any}|undefined; // LiveStatistics
   ticks_per_s: number;
   slowed: boolean;
   dropped_count: number;
-  counts: { organisms: number; food: number; poison: number; crates: number; obstacles: number }; // of the whole island
+  counts: {organisms: number; food: number; poison: number; crates: number; obstacles: number}; // of the whole island
 }
 
 export interface Snapshot {

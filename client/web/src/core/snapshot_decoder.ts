@@ -8,17 +8,17 @@
 //              long as it likes. It must not write into them: the decoder predicts the next snapshot from them, and
 //              successive snapshots share the columns that are equal. A caller may compare columns by identity to find
 //              those.
-import type { Message } from "../messages";
-import { crc32 } from "./crc32";
-import { decode_body } from "./delta";
-import type { Baseline, Section } from "./delta";
-import { DamagedData } from "./errors";
-import type { Boxes, CoarseTile, Items, Snapshot, SnapshotInfo } from "./snapshot";
-import { coarse_tile, decode_density, decode_dots, same_layout, TileMerger, tile_layout } from "./tiles";
-import type { TileLayout } from "./tiles";
+import type {Message} from "./messages";
+import {crc32} from "./crc32";
+import {decode_body} from "./delta";
+import type {Baseline, Section} from "./delta";
+import {DamagedData} from "./errors";
+import type {Boxes, CoarseTile, Items, Snapshot, SnapshotInfo} from "./snapshot";
+import {coarse_tile, decode_density, decode_dots, same_layout, TileMerger, tile_layout} from "./tiles";
+import type {TileLayout} from "./tiles";
 
 /** The fields that a delta omits if they are those of its base. */
-type Unchanging = Pick<SnapshotInfo, "world" | "run_id" | "island_count" | "width_px" | "height_px" | "item_radius_px">;
+type Unchanging = Pick<SnapshotInfo, "world"|"run_id"|"island_count"|"width_px"|"height_px"|"item_radius_px">;
 
 /** Returns whether a SnapshotFrame can be decoded without an earlier one. */
 export function is_keyframe(frame: Message): boolean {
@@ -27,26 +27,31 @@ export function is_keyframe(frame: Message): boolean {
 
 interface Base {
   baseline: Baseline;
-  sequence: number | bigint; // of the snapshot
+  sequence: number|bigint; // of the snapshot
 }
 
+type WholeBase = Base&{same: Unchanging};
+type TileBases = {
+  layout: TileLayout; bases: Map<number, Base>
+}; // key: index of the tile
+
 export class SnapshotDecoder {
-  private whole: (Base & { same: Unchanging }) | null = null;
-  private tiles: { layout: TileLayout; bases: Map<number, Base> } | null = null; // key: index of the tile
-  private merger = new TileMerger();
+  #whole: WholeBase|null = null;
+  #tiles: TileBases|null = null;
+  #merger = new TileMerger();
 
   /** frame: a SnapshotFrame message. */
   decode(frame: Message): Snapshot {
     // The baselines are taken out first. If this frame is damaged, there are none.
-    const whole = this.whole, tiles = this.tiles;
-    this.whole = this.tiles = null;
+    const whole = this.#whole, tiles = this.#tiles;
+    this.#whole = this.#tiles = null;
     if (frame.codec !== "CODEC_DELTA") {
       throw new DamagedData(`a snapshot's codec is ${frame.codec ?? "missing"}; this page decodes only CODEC_DELTA`);
     }
-    return frame.tile_px ? this.decode_tiles(frame, tiles) : this.decode_whole(frame, whole);
+    return frame.tile_px ? this.#decode_tiles(frame, tiles) : this.#decode_whole(frame, whole);
   }
 
-  private decode_whole(frame: Message, last: SnapshotDecoder["whole"]): Snapshot {
+  #decode_whole(frame: Message, last: WholeBase|null): Snapshot {
     const base_sequence = frame.base_sequence ?? 0, base = base_sequence === 0 ? null : last;
     if (base_sequence !== 0 && base === null) {
       throw new DamagedData("a snapshot has an unknown base: a keyframe is needed");
@@ -56,11 +61,11 @@ export class SnapshotDecoder {
     const position_bytes = position_bytes_of(frame), counts = counts_of(frame);
     const body = checked_body(frame, position_bytes, 0);
     const baseline = decode_body(body, counts, position_bytes, false, base === null ? null : base.baseline);
-    this.whole = { baseline, sequence: info.sequence, same: unchanging(info) };
+    this.#whole = {baseline, sequence: info.sequence, same: unchanging(info)};
     return snapshot_of(info, baseline.sections, []);
   }
 
-  private decode_tiles(frame: Message, last: SnapshotDecoder["tiles"]): Snapshot {
+  #decode_tiles(frame: Message, last: TileBases|null): Snapshot {
     const info = info_of(frame, unchanging(frame)), position_bytes = position_bytes_of(frame);
     const layout = tile_layout(frame.tile_px, info.width_px, info.height_px), tile_count = layout.columns * layout.rows;
     const before = last !== null && same_layout(last.layout, layout) ? last.bases : null;
@@ -80,7 +85,7 @@ export class SnapshotDecoder {
         const allowed = details.slice(1).join(", ");
         throw new DamagedData(`a tile's detail is ${message.detail ?? "missing"}, allowed: ${allowed}`);
       }
-      let base: Base | null = null;
+      let base: Base|null = null;
       if (message.detail === "DETAIL_FULL" && message.base_sequence) {
         base = before?.get(index) ?? null;
         if (base === null) {
@@ -92,7 +97,7 @@ export class SnapshotDecoder {
       const body = checked_body(message, position_bytes, crc32(little_endian([frame.tile_px, index, detail])));
       if (message.detail === "DETAIL_FULL") {
         const baseline = decode_body(body, counts, position_bytes, true, base === null ? null : base.baseline);
-        bases.set(index, { sequence, baseline });
+        bases.set(index, {sequence, baseline});
       } else {
         const tile = coarse_tile(layout, index);
         if (message.detail === "DETAIL_DOTS") {
@@ -103,23 +108,25 @@ export class SnapshotDecoder {
         coarse.push(tile);
       }
     }
-    const sections = this.merger.merge([...bases.values()].map((base) => base.baseline.sections));
-    this.tiles = { layout, bases };
+    const sections = this.#merger.merge([...bases.values()].map((base) => base.baseline.sections));
+    this.#tiles = {layout, bases};
     return snapshot_of(info, sections, coarse);
   }
 }
 
 const details = ["", "DETAIL_FULL", "DETAIL_DOTS", "DETAIL_DENSITY"]; // by number
 
-function check_base(got: number | bigint, base: Base | null): void {
+function check_base(got: number|bigint, base: Base|null): void {
   if (base !== null && got !== base.sequence) {
     throw new DamagedData(`a snapshot's base_sequence is ${got}, not the last one, ${base.sequence}`);
   }
 }
 
 function counts_of(message: Message): number[] {
-  return [message.organism_count ?? 0, message.food_count ?? 0, message.poison_count ?? 0, message.crate_count ?? 0,
-          message.obstacle_count ?? 0];
+  return [
+    message.organism_count ?? 0, message.food_count ?? 0, message.poison_count ?? 0, message.crate_count ?? 0,
+    message.obstacle_count ?? 0
+  ];
 }
 
 function position_bytes_of(frame: Message): number {
@@ -134,7 +141,7 @@ function little_endian(numbers: number[]): Uint8Array {
   return new Uint8Array(new Uint32Array(numbers).buffer); // body.ts checks the order of the processor
 }
 
-function words_of(number: number | bigint): [low: number, high: number] {
+function words_of(number: number|bigint): [low: number, high: number] {
   const whole = BigInt(number);
   return [Number(whole & 0xffffffffn), Number(whole >> 32n)];
 }
@@ -150,8 +157,9 @@ function checked_body(message: Message, position_bytes: number, before: number):
     throw new DamagedData(`a snapshot's compression is ${compression}; this page decodes only uncompressed snapshots`);
   }
   const body: Uint8Array = message.body ?? no_bytes;
-  const fields = little_endian([...words_of(message.sequence ?? 0), ...words_of(message.base_sequence ?? 0),
-                                ...counts_of(message), position_bytes]);
+  const fields = little_endian([
+    ...words_of(message.sequence ?? 0), ...words_of(message.base_sequence ?? 0), ...counts_of(message), position_bytes
+  ]);
   if (crc32(body, crc32(fields, before)) !== (message.checksum ?? 0)) {
     throw new DamagedData("a snapshot's checksum does not match its body");
   }
@@ -159,13 +167,19 @@ function checked_body(message: Message, position_bytes: number, before: number):
 }
 
 /** from: a SnapshotFrame or the info of a snapshot. */
-function unchanging(from: Message | SnapshotInfo): Unchanging {
-  const { world = "", run_id = "", island_count = 0, width_px = 0, height_px = 0, item_radius_px = 0 } = from;
-  return { world, run_id: typeof run_id === "string" ? run_id : hexadecimal(run_id), island_count, width_px, height_px,
-           item_radius_px };
+function unchanging(from: Message|SnapshotInfo): Unchanging {
+  const {world = "", run_id = "", island_count = 0, width_px = 0, height_px = 0, item_radius_px = 0} = from;
+  return {
+    world,
+    run_id: typeof run_id === "string" ? run_id : hexadecimal(run_id),
+    island_count,
+    width_px,
+    height_px,
+    item_radius_px
+  };
 }
 
-function hexadecimal(bytes: Uint8Array | undefined): string {
+function hexadecimal(bytes: Uint8Array|undefined): string {
   return Array.from(bytes ?? no_bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
@@ -187,8 +201,13 @@ function info_of(frame: Message, same: Unchanging): SnapshotInfo {
     ticks_per_s: frame.ticks_per_s ?? 0,
     slowed: frame.slowed ?? false,
     dropped_count: Number(frame.dropped_count ?? 0),
-    counts: { organisms: frame.organism_count ?? 0, food: frame.food_count ?? 0, poison: frame.poison_count ?? 0,
-              crates: frame.crate_count ?? 0, obstacles: frame.obstacle_count ?? 0 },
+    counts: {
+      organisms: frame.organism_count ?? 0,
+      food: frame.food_count ?? 0,
+      poison: frame.poison_count ?? 0,
+      crates: frame.crate_count ?? 0,
+      obstacles: frame.obstacle_count ?? 0
+    },
   };
   if (info.island >= info.island_count) {
     throw new DamagedData(`a snapshot's island is ${info.island}, not one of ${info.island_count}`);
@@ -207,12 +226,22 @@ function info_of(frame: Message, same: Unchanging): SnapshotInfo {
 
 function snapshot_of(info: SnapshotInfo, sections: Section[], coarse: CoarseTile[]): Snapshot {
   const [organisms, food, poison, crates, obstacles] = sections;
-  const items = (of: Section): Items => ({ id: of.id!, x: of.x, y: of.y });
-  const boxes = (of: Section): Boxes => ({ x: of.x, y: of.y, half_width: of.width!, half_height: of.height! });
+  const items = (of: Section): Items => ({id: of.id!, x: of.x, y: of.y});
+  const boxes = (of: Section): Boxes => ({x: of.x, y: of.y, half_width: of.width!, half_height: of.height!});
   return {
     info,
-    organisms: { id: organisms.id!, x: organisms.x, y: organisms.y, radius: organisms.width!, health: organisms.height!,
-                 heading: organisms.heading },
-    food: items(food), poison: items(poison), crates: boxes(crates), obstacles: boxes(obstacles), coarse,
+    organisms: {
+      id: organisms.id!,
+      x: organisms.x,
+      y: organisms.y,
+      radius: organisms.width!,
+      health: organisms.height!,
+      heading: organisms.heading
+    },
+    food: items(food),
+    poison: items(poison),
+    crates: boxes(crates),
+    obstacles: boxes(obstacles),
+    coarse,
   };
 }

@@ -1,10 +1,10 @@
 // Tiles: the squares into which an island is divided for subscriptions with a view. Decodes tiles at reduced detail and
 // merges the entities of tiles at full detail. stream.proto describes the bodies; proto/codec/tiles.cpp is the model.
-import { BodyReader } from "./body";
-import { as_int32, as_uint32, kinds } from "./delta";
-import type { Kind, Section } from "./delta";
-import { DamagedData } from "./errors";
-import type { CoarseTile, Dots } from "./snapshot";
+import {BodyReader} from "./body";
+import {as_int32, as_uint32, kinds} from "./delta";
+import type {Kind, Section} from "./delta";
+import {DamagedData} from "./errors";
+import type {CoarseTile, Dots} from "./snapshot";
 
 const tile_count_max = 1 << 24; // more than the server sends; the range of the indices
 const places_per_side = 256; // positions of dots within a tile
@@ -26,7 +26,7 @@ export function tile_layout(tile_px: number, width_px: number, height_px: number
   if (columns * rows > tile_count_max) {
     throw new DamagedData(`a snapshot's tile_px is ${tile_px}, too small for its island`);
   }
-  return { width_px, height_px, tile_px, columns, rows };
+  return {width_px, height_px, tile_px, columns, rows};
 }
 
 export function same_layout(a: TileLayout, b: TileLayout): boolean {
@@ -36,13 +36,20 @@ export function same_layout(a: TileLayout, b: TileLayout): boolean {
 /** Returns the place of a tile, without its content. */
 export function coarse_tile(layout: TileLayout, index: number): CoarseTile {
   const left_px = index % layout.columns * layout.tile_px, top_px = Math.floor(index / layout.columns) * layout.tile_px;
-  return { index, left_px, top_px, width_px: Math.min(layout.tile_px, layout.width_px - left_px),
-           height_px: Math.min(layout.tile_px, layout.height_px - top_px), dots: null, density: null };
+  return {
+    index,
+    left_px,
+    top_px,
+    width_px: Math.min(layout.tile_px, layout.width_px - left_px),
+    height_px: Math.min(layout.tile_px, layout.height_px - top_px),
+    dots: null,
+    density: null
+  };
 }
 
 /** Decodes the body of a tile at DETAIL_DOTS. Each dot is in the middle of its place. */
-export function decode_dots(body: Uint8Array, counts: number[], tile: CoarseTile,
-                            tile_px: number): NonNullable<CoarseTile["dots"]> {
+export function decode_dots(
+  body: Uint8Array, counts: number[], tile: CoarseTile, tile_px: number): NonNullable<CoarseTile["dots"]> {
   const count = counts.reduce((sum, of_kind) => sum + of_kind, 0);
   if (body.length !== 2 * count) {
     throw new DamagedData(`a tile's body is ${body.length} bytes long, not ${2 * count} as its counts say`);
@@ -59,9 +66,9 @@ export function decode_dots(body: Uint8Array, counts: number[], tile: CoarseTile
   const dots = counts.map((length): Dots => {
     const begin = next;
     next += length;
-    return { x_px: in_px(begin, length, tile.left_px), y_px: in_px(count + begin, length, tile.top_px) };
+    return {x_px: in_px(begin, length, tile.left_px), y_px: in_px(count + begin, length, tile.top_px)};
   });
-  return { organisms: dots[0], food: dots[1], poison: dots[2], crates: dots[3], obstacles: dots[4] };
+  return {organisms: dots[0], food: dots[1], poison: dots[2], crates: dots[3], obstacles: dots[4]};
 }
 
 /** Decodes the body of a tile at DETAIL_DENSITY. */
@@ -82,7 +89,7 @@ export function decode_density(body: Uint8Array, counts: number[]): NonNullable<
     return numbers;
   });
   reader.end();
-  return { cells, organisms, food, poison };
+  return {cells, organisms, food, poison};
 }
 
 // ---- merging -------------------------------------------------------------------------------------------------------
@@ -90,19 +97,19 @@ export function decode_density(body: Uint8Array, counts: number[]): NonNullable<
 /** Merges the entities of tiles into columns with rising ids. If no entity of a kind has changed, the columns are those
  *  of the last merge. */
 export class TileMerger {
-  private last: { parts: Section[]; order: Uint32Array; merged: Section }[] = []; // in the order of `kinds`
+  #last: {parts: Section[]; order: Uint32Array; merged: Section}[] = []; // in the order of `kinds`
 
   /** tiles: the sections of each tile, in the order of `kinds`. */
   merge(tiles: Section[][]): Section[] {
     return kinds.map((kind, k) => {
-      const parts = tiles.map((sections) => sections[k]).filter((section) => section.count > 0), last = this.last[k];
+      const parts = tiles.map((sections) => sections[k]).filter((section) => section.count > 0), last = this.#last[k];
       const are_same = (same: (a: Section, b: Section) => boolean) =>
         last !== undefined && last.parts.length === parts.length && parts.every((part, i) => same(part, last.parts[i]));
       if (!are_same((a, b) => a === b)) {
         const order = are_same((a, b) => a.id === b.id) ? last.order : order_of(parts);
-        this.last[k] = { parts, order, merged: merged(kind, parts, order) };
+        this.#last[k] = {parts, order, merged: merged(kind, parts, order)};
       }
-      return this.last[k].merged;
+      return this.#last[k].merged;
     });
   }
 }
@@ -117,17 +124,25 @@ function merged(kind: Kind, parts: Section[], order: Uint32Array): Section {
   }
   const numbers = (column: (part: Section) => Int32Array) =>
     in_order(joined(new Int32Array(order.length), parts.map(column)), order);
-  let heading: Uint8Array | null = null;
+  let heading: Uint8Array|null = null;
   if (with_headings > 0) {
     const all = joined(new Uint8Array(order.length), parts.map((part) => part.heading!));
     heading = Uint8Array.from(order, (i) => all[i]);
   }
-  return { count: order.length, id: as_uint32(numbers((part) => as_int32(part.id!))), x: numbers((part) => part.x),
-           y: numbers((part) => part.y), width: kind.has_sizes ? numbers((part) => part.width!) : null,
-           height: kind.has_sizes ? numbers((part) => part.height!) : null, heading, dx: null, dy: null };
+  return {
+    count: order.length,
+    id: as_uint32(numbers((part) => as_int32(part.id!))),
+    x: numbers((part) => part.x),
+    y: numbers((part) => part.y),
+    width: kind.has_sizes ? numbers((part) => part.width!) : null,
+    height: kind.has_sizes ? numbers((part) => part.height!) : null,
+    heading,
+    dx: null,
+    dy: null
+  };
 }
 
-function joined<C extends Uint32Array | Int32Array | Uint8Array>(to: C, columns: C[]): C {
+function joined<C extends Uint32Array|Int32Array|Uint8Array>(to: C, columns: C[]): C {
   let at = 0;
   for (const column of columns) {
     to.set(column, at);

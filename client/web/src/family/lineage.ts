@@ -10,7 +10,7 @@ export interface OrganismName {
 export interface Ancestor extends OrganismName {
   parents: OrganismName[]; // the first parent first; one if both are the same; none if unknown or placed
   origin: string; // "child", "survivor", "elite", "initial", "placed"
-  fitness: number | null; // null: its generation has not ended
+  fitness: number|null; // null: its generation has not ended
   child_count: number; // in the next generation; 0 before it has begun
   kept_count: number; // of these, how often it survived
 }
@@ -26,8 +26,8 @@ export class LineageReader {
   #rest = "";
 
   /** Adds a part; `last` completes the table. Throws an Error if a line is no row of the lineage table. */
-  add(text: Uint8Array | undefined, last: boolean): void {
-    const lines = (this.#rest + this.#decoder.decode(text ?? new Uint8Array(), { stream: !last })).split("\n");
+  add(text: Uint8Array|undefined, last: boolean): void {
+    const lines = (this.#rest + this.#decoder.decode(text ?? new Uint8Array(), {stream: !last})).split("\n");
     this.#rest = last ? "" : lines.pop()!;
     for (const line of lines) {
       if (line !== "") {
@@ -39,26 +39,32 @@ export class LineageReader {
 }
 
 function ancestor_of(line: string): Ancestor {
-  let row: { [column: string]: unknown };
+  let row: {[column: string]: unknown};
   try {
-    row = JSON.parse(line) as { [column: string]: unknown };
+    row = JSON.parse(line) as {[column: string]: unknown};
   } catch {
     throw new Error(`the lineage table has a line that is no JSON: ${line.slice(0, 80)}`);
   }
-  const number = (column: string): number | null => typeof row[column] === "number" ? row[column] as number : null;
+  const number = (column: string): number|null => typeof row[column] === "number" ? row[column] as number : null;
   const [generation, island, organism] = [number("generation"), number("island"), number("organism")];
   if (generation === null || island === null || organism === null) {
     throw new Error(`the lineage table has a row without an organism: ${line.slice(0, 80)}`);
   }
   const parents = ["parent_first", "parent_second"].flatMap((column) => {
     const parent = number(column), of_generation = number(column + "_generation"),
-      of_island = number(column + "_island");
-    return parent === null || of_generation === null ? []
-      : [{ generation: of_generation, island: of_island ?? 0, organism: parent }];
+          of_island = number(column + "_island");
+    return parent === null || of_generation === null ?
+      [] :
+      [{generation: of_generation, island: of_island ?? 0, organism: parent}];
   });
   return {
-    generation, island, organism, origin: String(row.origin ?? ""), fitness: number("fitness"),
+    generation,
+    island,
+    organism,
+    origin: String(row.origin ?? ""),
+    fitness: number("fitness"),
     parents: parents.length === 2 && name_key(parents[0]!) === name_key(parents[1]!) ? [parents[0]!] : parents,
-    child_count: number("child_count") ?? 0, kept_count: number("kept_count") ?? 0,
+    child_count: number("child_count") ?? 0,
+    kept_count: number("kept_count") ?? 0,
   };
 }

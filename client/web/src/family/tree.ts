@@ -1,8 +1,8 @@
 // FamilyTree: the ancestors of one organism with positions for a drawing: one row per generation, the earliest at the
 // top. The children of an organism are adjacent and ordered as their parents, so lines of first parents never cross. No
 // DOM.
-import { three_digits, with_separators } from "../page/numbers";
-import { type Ancestor, name_key, type OrganismName } from "./lineage";
+import {three_digits, with_separators} from "../texts/numbers";
+import {type Ancestor, name_key, type OrganismName} from "./lineage";
 
 export interface Spot {
   ancestor: Ancestor;
@@ -22,17 +22,18 @@ export interface FamilyTree {
  *
  *  both_parents  false: only lines of first parents, each of which gave at least half of the genes
  *  generations   the most rows, at least 1 */
-export function family_tree(ancestors: ReadonlyMap<string, Ancestor>, root: OrganismName, both_parents: boolean,
-    generations: number): FamilyTree | null {
+export function family_tree(
+  ancestors: ReadonlyMap<string, Ancestor>, root: OrganismName, both_parents: boolean, generations: number): FamilyTree|
+  null {
   const self = ancestors.get(name_key(root));
   if (!self) {
     return null;
   }
-  const spot = (ancestor: Ancestor): Spot => ({ ancestor, x: 0, first: -1, second: -1, child_count: 0 });
+  const spot = (ancestor: Ancestor): Spot => ({ancestor, x: 0, first: -1, second: -1, child_count: 0});
   const rows: Spot[][] = [[spot(self)]]; // from the root upwards at first
   while (rows.length < generations) {
     const above: Spot[] = [], places = new Map<string, number>();
-    const place = (name: OrganismName | undefined): number => {
+    const place = (name: OrganismName|undefined): number => {
       const ancestor = name && ancestors.get(name_key(name));
       if (!ancestor) {
         return -1;
@@ -60,15 +61,17 @@ export function family_tree(ancestors: ReadonlyMap<string, Ancestor>, root: Orga
   order(rows);
   const width = Math.max(...rows.map((row) => row.length));
   place_near_relatives(rows, width);
-  return { first_generation: root.generation - rows.length + 1, rows, width };
+  return {first_generation: root.generation - rows.length + 1, rows, width};
 }
 
 /** Orders every row, from the earliest one on, by first parent, second parent, island and id. */
 function order(rows: Spot[][]): void {
   rows.forEach((row, i) => {
-    const places = row.map((_, place) => place)
-      .sort((a, b) => row[a]!.first - row[b]!.first || row[a]!.second - row[b]!.second ||
-      row[a]!.ancestor.island - row[b]!.ancestor.island || row[a]!.ancestor.organism - row[b]!.ancestor.organism);
+    const places =
+      row.map((_, place) => place)
+        .sort(
+          (a, b) => row[a]!.first - row[b]!.first || row[a]!.second - row[b]!.second ||
+            row[a]!.ancestor.island - row[b]!.ancestor.island || row[a]!.ancestor.organism - row[b]!.ancestor.organism);
     const moved: number[] = [];
     places.forEach((old, place) => {
       moved[old] = place;
@@ -119,9 +122,9 @@ function place_near_relatives(rows: Spot[][], width: number): void {
  *  lie at least 0.5 inside 0 to `width`, which is at least their number. Source: pool adjacent violators, Ayer et al.
  *  1955, doi:10.1214/aoms/1177728423. */
 export function spread(positions: readonly number[], width: number): number[] {
-  const blocks: { sum: number; count: number }[] = []; // of neighbours at a distance of exactly 1
+  const blocks: {sum: number; count: number}[] = []; // of neighbours at a distance of exactly 1
   positions.forEach((x, i) => {
-    blocks.push({ sum: x - i, count: 1 });
+    blocks.push({sum: x - i, count: 1});
     while (blocks.length > 1) {
       const last = blocks[blocks.length - 1]!, before = blocks[blocks.length - 2]!;
       if (before.sum / before.count < last.sum / last.count) {
@@ -133,39 +136,46 @@ export function spread(positions: readonly number[], width: number): number[] {
     }
   });
   const most = width - positions.length + 0.5;
-  return blocks.flatMap((block) => new Array<number>(block.count)
-    .fill(Math.min(Math.max(block.sum / block.count, 0.5), most))).map((x, i) => x + i);
+  return blocks
+    .flatMap((block) => new Array<number>(block.count).fill(Math.min(Math.max(block.sum / block.count, 0.5), most)))
+    .map((x, i) => x + i);
 }
 
 /** "Organism 45 of generation 4: a child of 3 and 7, fitness 123; 2 children and 1 copy in the next generation." */
 export function ancestor_text(ancestor: Ancestor): string {
-  const { generation, island, organism, parents, child_count, kept_count } = ancestor;
-  const named = parents.map((parent) => parent.island === island ? String(parent.organism)
-    : `${parent.organism} of island ${parent.island}`).join(" and ");
-  const kind = parents.length === 0 ? (ancestor.origin === "placed" ? "placed by a user" : "without known parents")
-    : ancestor.origin === "elite" ? `of the elite, a copy of ${named}` : ancestor.origin === "survivor"
-      ? `a survivor, a copy of ${named}` : `a child of ${named}`;
-  const next = [
-    child_count > 0 ? `${with_separators(child_count)} ${child_count === 1 ? "child" : "children"}` : "",
-    kept_count > 0 ? `${with_separators(kept_count)} ${kept_count === 1 ? "copy" : "copies"}` : "",
-  ].filter((part) => part !== "").join(" and ");
+  const {generation, island, organism, parents, child_count, kept_count} = ancestor;
+  const named = parents
+                  .map(
+                    (parent) => parent.island === island ? String(parent.organism) :
+                                                           `${parent.organism} of island ${parent.island}`)
+                  .join(" and ");
+  const kind = parents.length === 0 ? (ancestor.origin === "placed" ? "placed by a user" : "without known parents") :
+    ancestor.origin === "elite"     ? `of the elite, a copy of ${named}` :
+        ancestor.origin === "survivor" ? `a survivor, a copy of ${named}` :
+                                         `a child of ${named}`;
+  const next =
+    [
+      child_count > 0 ? `${with_separators(child_count)} ${child_count === 1 ? "child" : "children"}` : "",
+      kept_count > 0 ? `${with_separators(kept_count)} ${kept_count === 1 ? "copy" : "copies"}` : "",
+    ].filter((part) => part !== "")
+      .join(" and ");
   return `Organism ${organism} of generation ` +
     `${with_separators(generation)}${island > 0 ? `, island ${island}` : ""}: ${kind}` +
     (ancestor.fitness === null ? "" : `, fitness ${three_digits(ancestor.fitness)}`) +
-      (next ? `; ${next} in the next generation` : "") + ".";
+    (next ? `; ${next} in the next generation` : "") + ".";
 }
 
 /** The place that an arrow key leads to: up to the first parent, down to a child, left and right in the row. */
-export function neighbour(tree: FamilyTree, row: number, place: number, key: string): { row: number; place: number } {
-  const here = { row, place };
+export function neighbour(tree: FamilyTree, row: number, place: number, key: string): {row: number; place: number} {
+  const here = {row, place};
   if (key === "ArrowUp") {
     const first = tree.rows[row]![place]!.first;
-    return first < 0 ? here : { row: row - 1, place: first };
+    return first < 0 ? here : {row: row - 1, place: first};
   }
   if (key === "ArrowDown") {
     const child = (tree.rows[row + 1] ?? []).findIndex((spot) => spot.first === place || spot.second === place);
-    return child < 0 ? here : { row: row + 1, place: child };
+    return child < 0 ? here : {row: row + 1, place: child};
   }
   const next = place + (key === "ArrowLeft" ? -1 : 1);
-  return tree.rows[row]![next] ? { row, place: next } : here;
+  return tree.rows[row]![next] ? {row, place: next} : here;
 }

@@ -1,9 +1,9 @@
 // BrainDiagram: positions of the neurons and connections of a network, for a drawing. Inputs are at the left, hidden
 // neurons in the middle, outputs at the right. No DOM.
-import type { Message } from "../messages";
+import type {Message} from "../core/messages";
 
 export interface Neuron {
-  kind: "input" | "hidden" | "output" | "bias";
+  kind: "input"|"hidden"|"output"|"bias";
   layer: number; // 0 to 2
   name: string;
   activation: number; // -1 to 1; 1 for a bias
@@ -35,34 +35,35 @@ const radius_max = 7;
  *
  *  weights       the genes of the group `brain`: see Brain in world.proto
  *  label_widths  room for the names at the left and at the right, in the unit of `width` */
-export function brain_diagram(brain: Message, weights: readonly number[], width: number,
-                              label_widths: { inputs: number; outputs: number }): BrainDiagram | null {
+export function brain_diagram(
+  brain: Message, weights: readonly number[], width: number,
+  label_widths: {inputs: number; outputs: number}): BrainDiagram|null {
   const inputs: number[] = brain.inputs ?? [], hidden: number[] = brain.hidden ?? [],
-    outputs: number[] = brain.outputs ?? [];
+                outputs: number[] = brain.outputs ?? [];
   const bias = brain.has_bias ? 1 : 0;
   const weight_count = hidden.length * (inputs.length + bias) + outputs.length * (hidden.length + bias);
   if (inputs.length === 0 || hidden.length === 0 || outputs.length === 0 || weights.length !== weight_count) {
     return null;
   }
   const rows = Math.max(inputs.length + bias, hidden.length + bias, outputs.length);
-  const diagram: BrainDiagram = { width, height: Math.min(rows * row_height, height_max), neurons: [],
-    connections: [] };
+  const diagram: BrainDiagram = {width, height: Math.min(rows * row_height, height_max), neurons: [], connections: []};
   const left = label_widths.inputs, right = width - label_widths.outputs;
-  const add_layer = (layer: number, kind: Neuron["kind"], names: string[], activations: number[], x: number,
-      has_bias: boolean): [number, number] => {
-    const count = activations.length + (has_bias ? 1 : 0);
-    const row = Math.min(diagram.height / count, row_height);
-    const radius = Math.min(radius_max, row * 0.42);
-    const top = (diagram.height - row * count) / 2 + row / 2;
-    const begin = diagram.neurons.length;
-    activations.forEach((activation, i) => {
-      diagram.neurons.push({ kind, layer, name: names[i] ?? String(i + 1), activation, x, y: top + row * i, radius });
-    });
-    if (has_bias) {
-      diagram.neurons.push({ kind: "bias", layer, name: "bias", activation: 1, x, y: top + row * (count - 1), radius });
-    }
-    return [begin, diagram.neurons.length];
-  };
+  const add_layer =
+    (layer: number, kind: Neuron["kind"], names: string[], activations: number[], x: number,
+     has_bias: boolean): [number, number] => {
+      const count = activations.length + (has_bias ? 1 : 0);
+      const row = Math.min(diagram.height / count, row_height);
+      const radius = Math.min(radius_max, row * 0.42);
+      const top = (diagram.height - row * count) / 2 + row / 2;
+      const begin = diagram.neurons.length;
+      activations.forEach((activation, i) => {
+        diagram.neurons.push({kind, layer, name: names[i] ?? String(i + 1), activation, x, y: top + row * i, radius});
+      });
+      if (has_bias) {
+        diagram.neurons.push({kind: "bias", layer, name: "bias", activation: 1, x, y: top + row * (count - 1), radius});
+      }
+      return [begin, diagram.neurons.length];
+    };
   const first = add_layer(0, "input", brain.input_names ?? [], inputs, left, bias !== 0);
   const middle = add_layer(1, "hidden", hidden.map((_, i) => `hidden${i + 1}`), hidden, (left + right) / 2, bias !== 0);
   const last = add_layer(2, "output", brain.output_names ?? [], outputs, right, false);
@@ -73,7 +74,7 @@ export function brain_diagram(brain: Message, weights: readonly number[], width:
         continue;
       }
       for (let from = before[0]; from < before[1]; ++from) {
-        diagram.connections.push({ from, to, gene, weight: weights[gene]!, strength: 0 });
+        diagram.connections.push({from, to, gene, weight: weights[gene]!, strength: 0});
         ++gene;
       }
     }
@@ -123,8 +124,7 @@ export function activation_text(activation: number): string {
 /** "hidden3 → turn: weight −0.42" */
 export function connection_text(diagram: BrainDiagram, connection: Connection): string {
   return `${diagram.neurons[connection.from]!.name} → ${diagram.neurons[connection.to]!.name}: weight ` +
-    `${activation_text(connection.weight)}`
-    .replace(/_/g, " ");
+    `${activation_text(connection.weight)}`.replace(/_/g, " ");
 }
 
 /** "hidden3: 0.31. Inputs: food distance × −1.20, …", the strongest first. */
@@ -134,10 +134,12 @@ export function neuron_text(diagram: BrainDiagram, neuron: number): string {
     return "bias: a constant 1";
   }
   const shown_max = 8;
-  const inputs = connections_of(diagram, neuron).map((i) => diagram.connections[i]!)
-    .filter((connection) => connection.to === neuron);
-  const shown = inputs.slice(0, shown_max)
-    .map((connection) => `${diagram.neurons[connection.from]!.name} × ${activation_text(connection.weight)}`);
+  const inputs = connections_of(diagram, neuron)
+                   .map((i) => diagram.connections[i]!)
+                   .filter((connection) => connection.to === neuron);
+  const shown =
+    inputs.slice(0, shown_max)
+      .map((connection) => `${diagram.neurons[connection.from]!.name} × ${activation_text(connection.weight)}`);
   if (inputs.length > shown_max) {
     shown.push(`and ${inputs.length - shown_max} weaker`);
   }

@@ -1,5 +1,5 @@
 // The axis of the health curve. No DOM.
-import { nice_step } from "../render/look";
+import {nice_step} from "../render/look";
 
 /** Returns the end of an axis that begins at 0 and contains `most`. */
 export function axis_end(most: number): number {

@@ -1,6 +1,6 @@
 // OrganismHistory: what has been received about one organism since it was selected: its health over time, its death,
 // its offspring, and how often it and its parents were picked for breeding. No DOM.
-import type { Message, PopulationColumns } from "../messages";
+import type {Message, PopulationColumns} from "../core/messages";
 
 export const health_points_max = 1024; // when reached, every second point is removed
 export const offspring_generation_max = 20_000; // of a larger next generation, the offspring are not searched
@@ -20,18 +20,18 @@ export interface Picks {
   count: number;
   all: number; // all picks of the breeding
   expected: number;
-  migrant: { island: number; organism: number } | null; // the organism is a copy of this organism of another island
+  migrant: {island: number; organism: number}|null; // the organism is a copy of this organism of another island
 }
 
 /** A child in the next generation. */
 export interface Child {
   id: number;
-  other_parent: number | null; // null: the child has only one parent
+  other_parent: number|null; // null: the child has only one parent
   unchanged: boolean; // it has the same genes as its only parent
 }
 
 /** How an organism came into its generation. */
-export type Origin = "unknown" | "elite" | "survivor" | "child";
+export type Origin = "unknown"|"elite"|"survivor"|"child";
 
 export interface Range {
   min: number;
@@ -40,14 +40,14 @@ export interface Range {
 }
 
 export class OrganismHistory {
-  readonly health: { s: number; health: number }[] = []; // seconds lived, rising
-  info: Message | null = null; // the newest OrganismInfo
-  brain: Message | null = null; // the last network that the server sent; it sends none for a dead organism
+  readonly health: {s: number; health: number}[] = []; // seconds lived, rising
+  info: Message|null = null; // the newest OrganismInfo
+  brain: Message|null = null; // the last network that the server sent; it sends none for a dead organism
   ranges: Range[] = []; // of each gene in its generation; empty: unknown
   ended = false; // its generation has ended
-  picks: Picks | null = null;
+  picks: Picks|null = null;
   origin: Origin = "unknown";
-  children: Child[] | null = null; // null: unknown
+  children: Child[]|null = null; // null: unknown
   children_left_out = false; // the next generation is too large to search it
   #parent_picks: Picks[] = [];
   #descendants_read = 0;
@@ -61,8 +61,9 @@ export class OrganismHistory {
 
   /** Takes an OrganismInfo if it is about this organism: every generation uses the same ids. */
   add_info(info: Message): void {
-    if ((info.id ?? 0) !== this.place.id || Number(info.generation ?? 0) !== this.place.generation ||
-        (info.island ?? 0) !== this.place.island) {
+    if (
+      (info.id ?? 0) !== this.place.id || Number(info.generation ?? 0) !== this.place.generation ||
+      (info.island ?? 0) !== this.place.island) {
       return;
     }
     this.info = info;
@@ -78,13 +79,14 @@ export class OrganismHistory {
       const kept = this.health.filter((_point, index) => index % 2 === 0);
       this.health.splice(0, this.health.length, ...kept);
     }
-    this.health.push({ s, health: info.health ?? 0 });
+    this.health.push({s, health: info.health ?? 0});
   }
 
   /** Reads the ranges of the genes from the population of the organism's generation. */
   add_population(population: PopulationColumns): void {
-    if (population.generation !== this.place.generation || population.island !== this.place.island ||
-        this.ranges.length > 0) {
+    if (
+      population.generation !== this.place.generation || population.island !== this.place.island ||
+      this.ranges.length > 0) {
       return;
     }
     this.ranges = population.genes.map(range_of);
@@ -93,17 +95,23 @@ export class OrganismHistory {
   /** Returns the fields of the next GetBreeding, without the world; null if nothing is missing.
    *
    *  has_bred  whether the organism's own generation has bred */
-  wanted(has_bred: boolean): Message | null {
-    const { island, generation } = this.place;
+  wanted(has_bred: boolean): Message|null {
+    const {island, generation} = this.place;
     for (const parent of distinct_parents(this.info)) {
       if (!this.picks_of_parent(parent)) {
-        return { island, generation: generation - 1, first_contender: parent, first_pick: no_rows,
-          first_descendant: no_rows };
+        return {
+          island,
+          generation: generation - 1,
+          first_contender: parent,
+          first_pick: no_rows,
+          first_descendant: no_rows
+        };
       }
     }
     if (has_bred && (this.picks === null || (this.children === null && !this.children_left_out))) {
       return {
-        island, generation,
+        island,
+        generation,
         first_contender: this.picks === null ? this.place.id : no_rows,
         first_pick: no_rows,
         first_descendant: this.#descendants_read,
@@ -115,21 +123,23 @@ export class OrganismHistory {
   /** Reads the answer to a request that wanted() returned. */
   add_breeding(request: Message, breeding: Message): void {
     const generation = Number(breeding.generation ?? 0);
-    const contender: Message | undefined = breeding.contenders?.[0];
-    const picks: Picks | null = contender ? {
+    const contender: Message|undefined = breeding.contenders?.[0];
+    const picks: Picks|null = contender ? {
       organism: request.first_contender,
       count: contender.copies ?? 0,
       all: breeding.pick_count ?? 0,
       expected: contender.expected_copies ?? 0,
-      migrant: contender.migrant ? { island: contender.migrant.island ?? 0, organism: contender.migrant.organism ?? 0 }
-        : null,
-    } : null;
+      migrant: contender.migrant ? {island: contender.migrant.island ?? 0, organism: contender.migrant.organism ?? 0} :
+                                   null,
+    } :
+                                          null;
     if (generation === this.place.generation) {
       this.picks = picks ?? this.picks;
       this.#add_descendants(breeding);
     } else if (generation === this.place.generation - 1 && picks) {
-      this.origin = this.place.id < (breeding.elite_count ?? 0) ? "elite"
-        : this.place.id < (breeding.survivor_count ?? 0) ? "survivor" : "child";
+      this.origin = this.place.id < (breeding.elite_count ?? 0) ? "elite" :
+        this.place.id < (breeding.survivor_count ?? 0)          ? "survivor" :
+                                                                  "child";
       this.#parent_picks.push(picks);
     }
   }
@@ -147,7 +157,9 @@ export class OrganismHistory {
       if (first === this.place.id || second === this.place.id) {
         this.#found.push({
           id: row.id ?? 0,
-          other_parent: first === second ? null : first === this.place.id ? second : first,
+          other_parent: first === second ? null :
+            first === this.place.id      ? second :
+                                           first,
           unchanged: first === second && !row.order_mutation && !(row.mutations?.length > 0),
         });
       }
@@ -161,13 +173,13 @@ export class OrganismHistory {
   }
 
   /** Returns the picks of this parent; null until known. */
-  picks_of_parent(parent: number): Picks | null {
+  picks_of_parent(parent: number): Picks|null {
     return this.#parent_picks.find((picks) => picks.organism === parent) ?? null;
   }
 }
 
 /** The parents of an organism, each once. */
-export function distinct_parents(info: Message | null): number[] {
+export function distinct_parents(info: Message|null): number[] {
   return [...new Set<number>(info?.parents ?? [])];
 }
 
@@ -178,5 +190,5 @@ export function range_of(values: Float32Array): Range {
     max = Math.max(max, value);
     sum += value;
   }
-  return values.length === 0 ? { min: 0, mean: 0, max: 0 } : { min, mean: sum / values.length, max };
+  return values.length === 0 ? {min: 0, mean: 0, max: 0} : {min, mean: sum / values.length, max};
 }

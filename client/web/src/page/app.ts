@@ -1,30 +1,29 @@
 // App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices below.
-import type { Message } from "../messages";
-import { panels } from "../panels/all";
-import { unused_name } from "../panels/new_world";
-import type { PanelContext } from "../panels/panel";
-import { Column } from "./column";
-import { set_attribute } from "./controls";
-import { copy_text } from "./copy";
-import { h } from "./dom";
-import { event_text, noticed_events } from "./event_text";
-import { FitnessCurve } from "./fitness_curve";
-import { LinkFollower } from "./link_follower";
-import { link_of } from "./link";
-import { Help, listen_to_keys } from "./keys";
-import { Banners, Notices, type Banner } from "./notices";
-import { PaneArea } from "./pane_area";
-import type { Server } from "./server";
-import { of_browser } from "./storage";
-import { session_text, storage_text } from "./texts";
-import { theme_button } from "./theme";
-import type { Tokens } from "./tokens";
-import { Tools } from "./tools";
-import { ViewedWorld } from "./world";
+import type {Message} from "../core/messages";
+import {panels} from "../panels/all";
+import {unused_name} from "../panels/new_world";
+import {Column} from "./column";
+import {set_attribute} from "../widgets/controls";
+import {copy_text} from "../widgets/copy";
+import {h} from "../widgets/dom";
+import {event_text, noticed_events} from "../world/event_text";
+import {FitnessCurve} from "../plots/fitness_curve";
+import {LinkFollower} from "./link_follower";
+import {link_of} from "../world/link";
+import {Help, type KeyTarget, listen_to_keys} from "./keys";
+import {Banners, Notices, type Banner} from "../widgets/notices";
+import {PaneArea} from "./pane_area";
+import type {Server} from "../world/server";
+import {of_browser} from "../world/storage";
+import {session_text, storage_text} from "../texts/texts";
+import {theme_button} from "../widgets/theme";
+import type {Tokens} from "../world/tokens";
+import {Tools} from "./tools";
+import {ViewedWorld} from "../world/world";
 
 const first_world = "default"; // shown first if the server has it
 
-export class App implements PanelContext {
+export class App implements KeyTarget {
   readonly element: HTMLElement;
   readonly column: Column;
   readonly areas: PaneArea[] = [];
@@ -40,20 +39,53 @@ export class App implements PanelContext {
   #curve: FitnessCurve;
   #show_column: HTMLButtonElement;
 
-  constructor(readonly server: Server, private readonly tokens: Tokens) {
-    this.#empty = h("div", { class: "empty" }, h("p", {}, "The server has no world yet."),
-      h("button", { type: "button", class: "button button-primary", onclick: () => this.open("worlds", { create: true }) }, "New world …"));
-    this.#worlds = h("main", { class: "worlds", id: "worlds", tabindex: -1 });
+  readonly #tokens: Tokens;
+
+  constructor(readonly server: Server, tokens: Tokens) {
+    this.#tokens = tokens;
+    this.#empty = h(
+      "div", {class: "empty"}, h("p", {}, "The server has no world yet."),
+      h("button", {type: "button", class: "button button-primary", onclick: () => this.open("worlds", {create: true})},
+        "New world …"));
+    this.#worlds = h("main", {class: "worlds", id: "worlds", tabindex: -1});
     this.#add_area();
     this.#curve = new FitnessCurve((generation) => void this.attempt(() => this.world().show_past(generation)));
-    const hide = h("button", { type: "button", class: "button button-quiet square wide-only", "aria-label": "Hide the column", title: "Hide the column (D)", onclick: () => this.toggle_column() }, "»");
-    this.#show_column = h("button", { type: "button", class: "button square show-column", "aria-label": "Show the column", title: "Show the column (D)", onclick: () => this.toggle_column() }, "«");
-    const help = h("button", { type: "button", class: "button button-quiet square", "aria-label": "Keys and gestures", title: "Keys and gestures (?)", onclick: () => this.toggle_help() }, "?");
-    this.column = new Column(this, server, panels.map((make) => make(this)), new Tools(() => this.area().pane, this.notify), [theme_button(), help, hide]);
+    const hide =
+      h("button", {
+        type: "button",
+        class: "button button-quiet square wide-only",
+        "aria-label": "Hide the column",
+        title: "Hide the column (D)",
+        onclick: () => this.toggle_column()
+      },
+        "»");
+    this.#show_column =
+      h("button", {
+        type: "button",
+        class: "button square show-column",
+        "aria-label": "Show the column",
+        title: "Show the column (D)",
+        onclick: () => this.toggle_column()
+      },
+        "«");
+    const help =
+      h("button", {
+        type: "button",
+        class: "button button-quiet square",
+        "aria-label": "Keys and gestures",
+        title: "Keys and gestures (?)",
+        onclick: () => this.toggle_help()
+      },
+        "?");
+    this.column = new Column(
+      this, server, panels.map((make) => make(this)), new Tools(() => this.area().pane, this.notify),
+      [theme_button(), help, hide]);
     this.column.curve.append(this.#curve.element);
-    this.element = h("div", { class: "app" },
-      h("a", { class: "button skip", href: "#worlds", onclick: (event: Event) => this.#skip(event) }, "Skip to the world"),
-      this.#banners.element, this.#worlds, this.#show_column, this.column.element, this.#notices.element);
+    this.element =
+      h("div", {class: "app"},
+        h("a", {class: "button skip", href: "#worlds", onclick: (event: Event) => this.#skip(event)},
+          "Skip to the world"),
+        this.#banners.element, this.#worlds, this.#show_column, this.column.element, this.#notices.element);
     set_attribute(this.element, "data-column", of_browser.get("column") === "collapsed" ? "collapsed" : "shown");
     server.on_change(() => this.#refresh());
     server.on_event((event) => this.#announce(event));
@@ -80,11 +112,11 @@ export class App implements PanelContext {
   }
 
   /** The world of the other pane if two are shown side by side. */
-  other(): ViewedWorld | null {
+  other(): ViewedWorld|null {
     return this.areas.find((_area, i) => i !== this.#focused)?.world ?? null;
   }
 
-  open = (name: string, subject?: { [key: string]: unknown }): void => {
+  open = (name: string, subject?: {[key: string]: unknown}): void => {
     const panel = this.column.panels.find((one) => one.name === name);
     if (!panel) {
       return;
@@ -100,7 +132,7 @@ export class App implements PanelContext {
 
   notify = (text: string): void => this.#notices.show(text);
 
-  attempt = async (what: () => Promise<unknown>): Promise<boolean> => {
+  attempt = async(what: () => Promise<unknown>): Promise<boolean> => {
     try {
       await what();
       return true;
@@ -131,7 +163,7 @@ export class App implements PanelContext {
       this.#close_area(this.areas[1 - this.#focused]!);
       return;
     }
-    const { server } = this, shown = this.world(), { name, island } = shown;
+    const server = this.server, shown = this.world(), {name, island} = shown;
     const names = server.world_names;
     const next = names[(names.indexOf(name) + 1) % names.length];
     if (shown.forked && server.world(shown.forked)) {
@@ -148,10 +180,10 @@ export class App implements PanelContext {
     }
   }
 
-  fork = async (name?: string): Promise<void> => {
-    const { server } = this, world = this.world(), { island } = world;
+  fork = async(name?: string): Promise<void> => {
+    const server = this.server, world = this.world(), {island} = world;
     const fork = name ?? unused_name(world.name, server.world_names);
-    const act = (): Promise<unknown> => server.request("fork_world", { world: world.shown, name: fork });
+    const act = (): Promise<unknown> => server.request("fork_world", {world: world.shown, name: fork});
     if (name !== undefined) {
       await act();
     } else if (!(await this.attempt(act))) {
@@ -166,10 +198,13 @@ export class App implements PanelContext {
 
   /** The link to the moment that a world shows; empty before the first snapshot. */
   link(world = this.world()): string {
-    const { snapshot } = world;
+    const {snapshot} = world;
     return !snapshot ? "" : link_of(location.origin + location.pathname, {
-      world: world.name, generation: snapshot.generation, tick: snapshot.generation_tick,
-      island: snapshot.island_count > 1 ? snapshot.island : null, organism: world.selected,
+      world: world.name,
+      generation: snapshot.generation,
+      tick: snapshot.generation_tick,
+      island: snapshot.island_count > 1 ? snapshot.island : null,
+      organism: world.selected,
       rate: world.has_rate ? world.rate_hz : null,
     });
   }
@@ -191,12 +226,17 @@ export class App implements PanelContext {
   #add_area(): PaneArea {
     const world = new ViewedWorld(this.server, ++this.#last_pane);
     const area: PaneArea = new PaneArea(world, {
-      worker: this.server, notify: this.notify, attempt: this.attempt, copy_link: this.copy_link,
-      on_focus: () => this.#focus(area), on_tool: () => this.#refresh(), on_select: () => this.#show_organism(),
+      worker: this.server,
+      notify: this.notify,
+      attempt: this.attempt,
+      copy_link: this.copy_link,
+      on_focus: () => this.#focus(area),
+      on_tool: () => this.#refresh(),
+      on_select: () => this.#show_organism(),
       beside: () => (this.areas.length > 1 ? this.#close_area(area) : this.toggle_beside()),
     });
     for (const event of ["pointerdown", "focusin"]) { // before the controls of the pane act
-      area.element.addEventListener(event, () => this.#focus(area), { capture: true });
+      area.element.addEventListener(event, () => this.#focus(area), {capture: true});
     }
     this.areas.push(area);
     this.#worlds.append(area.element);
@@ -259,7 +299,7 @@ export class App implements PanelContext {
 
   #refresh(): void {
     this.#banners.set(this.#wrong());
-    const { server } = this, names = server.world_names;
+    const server = this.server, names = server.world_names;
     const first = names.includes(first_world) ? first_world : names[0];
     if (server.worlds_known && !this.areas[0]!.world.name && first !== undefined) {
       this.areas[0]!.world.show(first);
@@ -297,7 +337,7 @@ export class App implements PanelContext {
 
   /** Asks whether to use the token of a link. */
   #other_token(): Banner[] {
-    const { server, tokens } = this;
+    const server = this.server, tokens = this.#tokens;
     if (tokens.offered === null || server.state.phase !== "open") {
       return [];
     }
@@ -305,20 +345,41 @@ export class App implements PanelContext {
       tokens.decline();
       this.#refresh();
     };
-    return [{ name: "token", kind: "warn", text: `The link contains another token. You are connected as ${session_text(server.state.welcome)}.`,
-      actions: [{ label: "Use the token of the link", act: use }, { label: "Keep mine", act: keep }] }];
+    return [{
+      name: "token",
+      kind: "warn",
+      text: `The link contains another token. You are connected as ${session_text(server.state.welcome)}.`,
+      actions: [{label: "Use the token of the link", act: use}, {label: "Keep mine", act: keep}]
+    }];
   }
 
   #wrong(): Banner[] {
-    const { server } = this, { phase, message } = server.state, storage = storage_text(server.storage);
-    const reload = { label: "Reload", act: () => location.reload() };
+    const server = this.server, {phase, message} = server.state, storage = storage_text(server.storage);
+    const reload = {label: "Reload", act: () => location.reload()};
     return [
-      ...(phase === "lost" || phase === "connecting" ? [{ name: "lost", kind: "bad" as const, text: server.going_away ? "The server has shut down. Trying again …" : `${message || "Connecting"}. Trying again …` }] : []),
-      ...(phase === "open" && server.going_away ? [{ name: "going", kind: "warn" as const, text: "The server is shutting down." }] : []),
-      ...(server.updated ? [{ name: "updated", kind: "warn" as const, text: "The server was updated: reload the page.", actions: [reload] }] : []),
+      ...(
+        phase === "lost" || phase === "connecting" ? [{
+          name: "lost",
+          kind: "bad" as const,
+          text: server.going_away ? "The server has shut down. Trying again …" :
+                                    `${message || "Connecting"}. Trying again …`
+        }] :
+                                                     []),
+      ...(
+        phase === "open" && server.going_away ?
+          [{name: "going", kind: "warn" as const, text: "The server is shutting down."}] :
+          []),
+      ...(
+        server.updated ? [{
+          name: "updated",
+          kind: "warn" as const,
+          text: "The server was updated: reload the page.",
+          actions: [reload]
+        }] :
+                         []),
       ...this.#other_token(),
       ...this.#link.banners(),
-      ...(storage ? [{ name: "storage", kind: "bad" as const, text: storage }] : []),
+      ...(storage ? [{name: "storage", kind: "bad" as const, text: storage}] : []),
     ];
   }
 }

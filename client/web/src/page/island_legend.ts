@@ -1,11 +1,11 @@
 // IslandLegend: explains the colours of the organisms in the lower left corner of the island: a colour scale, or entries. The same
 // texts as in evoview (client/viewer/island/legend.cpp).
-import { colours_of, css, ramp_at } from "../render/look";
-import type { Colour } from "../render/look";
-import { set_attribute } from "./controls";
-import { h, set_text } from "./dom";
-import { shown_number, with_separators } from "./numbers";
-import type { ViewedWorld } from "./world";
+import {colours_of, css, ramp_at} from "../render/look";
+import type {Colour} from "../render/look";
+import {set_attribute} from "../widgets/controls";
+import {h, set_text} from "../widgets/dom";
+import {shown_number, with_separators} from "../texts/numbers";
+import type {ViewedWorld} from "../world/world";
 
 interface Scale {
   title: string;
@@ -14,14 +14,17 @@ interface Scale {
 }
 
 interface Entry {
-  mark: "disc" | "ring" | "arrow";
+  mark: "disc"|"ring"|"arrow";
   colour: string;
   text: string;
 }
 
 /** The gene's name with its unit: "food_radius, px". */
 export function gene_title(name: string): string {
-  return name + (name === "food_radius" || name === "poison_radius" ? ", px" : name.includes("<") ? "" : ", gene units");
+  return name +
+    (name === "food_radius" || name === "poison_radius" ? ", px" :
+       name.includes("<")                               ? "" :
+                                                          ", gene units");
 }
 
 const grey = "rgb(140, 140, 144)";
@@ -29,22 +32,23 @@ const grey = "rgb(140, 140, 144)";
 export class IslandLegend {
   readonly element: HTMLElement;
   readonly #scale_title = h("div", {});
-  readonly #bar = h("canvas", { class: "island-legend-bar", width: 200, height: 1, "aria-hidden": "true" });
+  readonly #bar = h("canvas", {class: "island-legend-bar", width: 200, height: 1, "aria-hidden": "true"});
   readonly #low = h("span", {});
   readonly #high = h("span", {});
-  readonly #scale = h("div", {}, this.#scale_title, this.#bar, h("div", { class: "island-legend-range" }, this.#low, this.#high));
+  readonly #scale =
+    h("div", {}, this.#scale_title, this.#bar, h("div", {class: "island-legend-range"}, this.#low, this.#high));
   readonly #title = h("div", {});
   readonly #entries = h("ul", {});
   #palette = "";
   #key = "";
 
   constructor() {
-    this.element = h("div", { class: "island-legend", hidden: true }, this.#scale, this.#title, this.#entries);
+    this.element = h("div", {class: "island-legend", hidden: true}, this.#scale, this.#title, this.#entries);
   }
 
   refresh(world: ViewedWorld): void {
     const scale = scale_of(world);
-    const { title, entries } = entries_of(world);
+    const {title, entries} = entries_of(world);
     this.element.hidden = world.drawing === null || (scale === null && entries.length === 0);
     if (this.element.hidden) {
       return;
@@ -63,15 +67,15 @@ export class IslandLegend {
     const key = JSON.stringify(entries);
     if (key !== this.#key) {
       this.#key = key;
-      this.#entries.replaceChildren(...entries.map(({ mark, colour, text }) => {
-        const sign = h("span", { class: `island-legend-mark ${mark}`, "aria-hidden": "true" });
+      this.#entries.replaceChildren(...entries.map(({mark, colour, text}) => {
+        const sign = h("span", {class: `island-legend-mark ${mark}`, "aria-hidden": "true"});
         sign.style.color = colour;
         return h("li", {}, sign, text);
       }));
     }
   }
 
-  #draw_bar(palette: "violet" | "viridis" | "cividis"): void {
+  #draw_bar(palette: "violet"|"viridis"|"cividis"): void {
     if (palette === this.#palette) {
       return;
     }
@@ -84,32 +88,32 @@ export class IslandLegend {
   }
 }
 
-function scale_of(world: ViewedWorld): Scale | null {
-  const { drawing, look } = world;
+function scale_of(world: ViewedWorld): Scale|null {
+  const {drawing, look} = world;
   if (drawing === null) {
     return null;
   }
   if (drawing.density !== null) {
     const side = shown_number(drawing.density.cell_px);
-    return { title: `organisms in ${side} × ${side} px`, low: 0, high: drawing.density.most };
+    return {title: `organisms in ${side} × ${side} px`, low: 0, high: drawing.density.most};
   }
   if (look.colour_by === "health") {
-    return { title: "health, points", low: 0, high: drawing.health_max };
+    return {title: "health, points", low: 0, high: drawing.health_max};
   }
   if (look.colour_by !== "" && look.colour_by !== "lineage" && drawing.gene_range !== null) {
-    return { title: gene_title(look.colour_by), low: drawing.gene_range[0], high: drawing.gene_range[1] };
+    return {title: gene_title(look.colour_by), low: drawing.gene_range[0], high: drawing.gene_range[1]};
   }
   return null;
 }
 
-function entries_of(world: ViewedWorld): { title: string; entries: Entry[] } {
-  const { drawing, look, population } = world;
+function entries_of(world: ViewedWorld): {title: string; entries: Entry[]} {
+  const {drawing, look, population} = world;
   const entries: Entry[] = [];
   let title = "";
-  const add = (mark: Entry["mark"], colour: Colour | string, text: string) =>
-    entries.push({ mark, colour: typeof colour === "string" ? colour : css(colour), text });
+  const add = (mark: Entry["mark"], colour: Colour|string, text: string) =>
+    entries.push({mark, colour: typeof colour === "string" ? colour : css(colour), text});
   if (drawing === null || drawing.density !== null) {
-    return { title, entries };
+    return {title, entries};
   }
   const colours = colours_of(look);
   if (look.colour_by === "lineage") {
@@ -117,7 +121,9 @@ function entries_of(world: ViewedWorld): { title: string; entries: Entry[] } {
       add("disc", grey, "lineages not known yet");
     } else {
       title = "lineages, counted from generation 1";
-      drawing.lineages.forEach(({ founder, count, colour }) => add("disc", colour, `descendants of organism ${with_separators(founder)}: ${with_separators(count)}`));
+      drawing.lineages.forEach(
+        ({founder, count, colour}) =>
+          add("disc", colour, `descendants of organism ${with_separators(founder)}: ${with_separators(count)}`));
       const others = drawing.lineage_others;
       if (others !== null && others.lineages > 0) {
         add("disc", grey, `${with_separators(others.lineages)} smaller lineages: ${with_separators(others.count)}`);
@@ -141,5 +147,5 @@ function entries_of(world: ViewedWorld): { title: string; entries: Entry[] } {
       add("arrow", colours.wanders, "wanders" + length);
     }
   }
-  return { title, entries };
+  return {title, entries};
 }

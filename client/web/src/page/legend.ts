@@ -1,19 +1,19 @@
 // Legend: explains the marks of the island in one line: each mark as it is drawn, on the ground of the island, with its name.
-import { set_attribute } from "./controls";
-import { h, set_text, svg } from "./dom";
-import type { ViewedWorld } from "./world";
+import {set_attribute} from "../widgets/controls";
+import {h, set_text, svg} from "../widgets/dom";
+import type {ViewedWorld} from "../world/world";
 
-type Mark = "organism" | "food" | "poison";
+type Mark = "organism"|"food"|"poison";
 
 export class Legend {
-  readonly element = h("div", { class: "legend" });
+  readonly element = h("div", {class: "legend"});
   #organism = h("span", {});
 
   constructor() {
     this.element.append(
-      h("span", { class: "legend-item" }, mark("organism"), this.#organism),
-      h("span", { class: "legend-item" }, mark("food"), "food"),
-      h("span", { class: "legend-item" }, mark("poison"), "poison"));
+      h("span", {class: "legend-item"}, mark("organism"), this.#organism),
+      h("span", {class: "legend-item"}, mark("food"), "food"),
+      h("span", {class: "legend-item"}, mark("poison"), "poison"));
   }
 
   refresh(world: ViewedWorld): void {
@@ -25,15 +25,21 @@ export class Legend {
 
 /** The three marks in both skins; app.css shows those of the look. */
 function mark(kind: Mark): SVGElement {
-  const drawing = svg("svg", { class: `mark mark-${kind}`, viewBox: "-8 -8 16 16", width: 16, height: 16, "aria-hidden": "true" });
+  const drawing =
+    svg("svg", {class: `mark mark-${kind}`, viewBox: "-8 -8 16 16", width: 16, height: 16, "aria-hidden": "true"});
   if (kind === "organism") {
     drawing.append(
-      svg("circle", { class: "vivid mark-ring", r: 6.5 }), svg("circle", { class: "vivid mark-body", r: 4.6 }), svg("path", { class: "vivid mark-arc", d: "M0 -6.5A6.5 6.5 0 1 1 -6.5 0" }),
-      svg("circle", { class: "classic mark-circle", r: 6.5 }), svg("text", { class: "classic mark-number", y: 2.8 }, "9"));
+      svg("circle", {class: "vivid mark-ring", r: 6.5}), svg("circle", {class: "vivid mark-body", r: 4.6}),
+      svg("path", {class: "vivid mark-arc", d: "M0 -6.5A6.5 6.5 0 1 1 -6.5 0"}),
+      svg("circle", {class: "classic mark-circle", r: 6.5}), svg("text", {class: "classic mark-number", y: 2.8}, "9"));
   } else if (kind === "food") {
-    drawing.append(svg("path", { class: "vivid mark-fill", d: "M-5.5 5.5C-7 -3 -2 -6.5 6 -6C6.5 2 3 6.5 -5.5 5.5Z" }), svg("circle", { class: "classic mark-fill", r: 4 }));
+    drawing.append(
+      svg("path", {class: "vivid mark-fill", d: "M-5.5 5.5C-7 -3 -2 -6.5 6 -6C6.5 2 3 6.5 -5.5 5.5Z"}),
+      svg("circle", {class: "classic mark-fill", r: 4}));
   } else {
-    drawing.append(svg("path", { class: "vivid mark-fill", d: "M-6 -6L0 -2.2L6 -6L2.2 0L6 6L0 2.2L-6 6L-2.2 0Z" }), svg("circle", { class: "classic mark-fill", r: 4 }));
+    drawing.append(
+      svg("path", {class: "vivid mark-fill", d: "M-6 -6L0 -2.2L6 -6L2.2 0L6 6L0 2.2L-6 6L-2.2 0Z"}),
+      svg("circle", {class: "classic mark-fill", r: 4}));
   }
   return drawing;
 }

@@ -1,11 +1,11 @@
 // LinkFollower: shows the moment that a link names, or the nearest one that the server has, and says what was wrong
 // with the link.
-import { Refusal } from "./server";
-import { nearest, read_link, within, type ReadLink } from "./link";
-import type { Banner } from "./notices";
-import type { PanelContext } from "../panels/panel";
-import type { Moment } from "./time_scale";
-import type { ViewedWorld } from "./world";
+import {Refusal} from "../world/server";
+import {nearest, read_link, within, type ReadLink} from "../world/link";
+import type {Banner} from "../widgets/notices";
+import type {PanelContext} from "../world/panel_context";
+import type {Moment} from "../world/time_scale";
+import type {ViewedWorld} from "../world/world";
 
 const rate_max_hz = 60; // of servers that do not state it
 const corrections_max = 2; // of the generation, then of the tick
@@ -15,11 +15,17 @@ export class LinkFollower {
   #number = 0;
 
   /** on_change: called after banners() has changed. */
-  constructor(private readonly context: PanelContext, private readonly on_change: () => void) {}
+  readonly #context: PanelContext;
+  readonly #on_change: () => void;
+
+  constructor(context: PanelContext, on_change: () => void) {
+    this.#context = context;
+    this.#on_change = on_change;
+  }
 
   banners(): Banner[] {
-    const action = { label: "Close", act: () => this.#say([]) };
-    return this.#wrong === "" ? [] : [{ name: "link", kind: "warn", text: this.#wrong, actions: [action] }];
+    const action = {label: "Close", act: () => this.#say([])};
+    return this.#wrong === "" ? [] : [{name: "link", kind: "warn", text: this.#wrong, actions: [action]}];
   }
 
   /** Shows what the link names in the pane with the focus. A later link ends an earlier one. */
@@ -40,7 +46,7 @@ export class LinkFollower {
   }
 
   async #show(read: ReadLink, is_newest: () => boolean): Promise<void> {
-    const { moment } = read, { server } = this.context, world = this.context.world();
+    const {moment} = read, {server} = this.#context, world = this.#context.world();
     const name = moment.world ?? world.name, info = server.world(name);
     if (!info && server.damage_of(name)) {
       world.show(name);
@@ -49,7 +55,7 @@ export class LinkFollower {
     if (!info) {
       const names = server.worlds.filter((one) => one.replay?.replay_of === undefined).map((one) => one.name as string);
       read.wrong.unshift(`world: got ${name}, this server has ${names.length > 0 ? names.join(", ") : "no world"}`);
-      this.context.open("worlds");
+      this.#context.open("worlds");
       return;
     }
     const rate_max = Math.floor(server.limits.snapshot_rate_hz_max ?? rate_max_hz);
@@ -61,8 +67,8 @@ export class LinkFollower {
       world.choose_island(island);
     }
     if (moment.generation !== null) {
-      const { generation, tick } = moment;
-      await this.#show_past(read, world, tick === null ? { generation } : { generation, tick }, is_newest);
+      const {generation, tick} = moment;
+      await this.#show_past(read, world, tick === null ? {generation} : {generation, tick}, is_newest);
       if (is_newest() && world.is_own_replay && world.state === "RUN_STATE_RUNNING") {
         await world.pause();
       }
@@ -91,7 +97,7 @@ export class LinkFollower {
   }
 
   #select(read: ReadLink, world: ViewedWorld): void {
-    const { snapshot } = world, { organism } = read.moment, wrong_before = read.wrong.length;
+    const {snapshot} = world, {organism} = read.moment, wrong_before = read.wrong.length;
     const count = Number(snapshot!.live?.organism_count ?? 0);
     if (organism === null) {
       world.select(null);
@@ -102,12 +108,12 @@ export class LinkFollower {
     }
     if (read.wrong.length === wrong_before) {
       world.select(organism);
-      this.context.open("organism");
+      this.#context.open("organism");
     }
   }
 
   #say(wrong: string[]): void {
     this.#wrong = wrong.join("; ");
-    this.on_change();
+    this.#on_change();
   }
 }

@@ -1,12 +1,15 @@
 // main: starts the page: loads the protocol, starts the worker, connects, and shows the worlds when the session is open.
-import { App } from "./app";
-import { show_icon } from "./icon";
-import { Server } from "./server";
-import { Start, take_token } from "./start";
-import { of_tab } from "./storage";
-import { Tokens } from "./tokens";
+import {show_icon} from "../widgets/icon";
+import {Server} from "../world/server";
+import {of_tab} from "../world/storage";
+import {Tokens} from "../world/tokens";
 
-declare const trustedTypes: { createPolicy(name: string, rules: { createScriptURL(url: string): string }): { createScriptURL(url: string): string } } | undefined;
+import {App} from "./app";
+import {Start, take_token} from "./start";
+
+declare const trustedTypes:
+  {createPolicy(name: string, rules: {createScriptURL(url: string): string}): {createScriptURL(url: string): string}}|
+  undefined;
 
 const worker_file = "worker.js";
 
@@ -20,7 +23,7 @@ function start_worker(): Worker {
       return url;
     },
   });
-  return new Worker(policy ? policy.createScriptURL(worker_file) : worker_file, { type: "module" });
+  return new Worker(policy ? policy.createScriptURL(worker_file) : worker_file, {type: "module"});
 }
 
 async function run(): Promise<void> {
@@ -45,7 +48,7 @@ async function run(): Promise<void> {
   }
   const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`;
   const server = new Server(worker, descriptor, url);
-  let app: App | null = null, state = server.state;
+  let app: App|null = null, state = server.state;
   server.on_change(() => {
     if (server.state === state) {
       return;
@@ -62,14 +65,15 @@ async function run(): Promise<void> {
     }
   });
   start.follow(server, tokens);
-  worker.addEventListener("error", (event) => start.fail(`The page has failed: ${event.message || "its worker cannot be started"}`));
-  const show_visibility = (): void => server.post({ kind: "visible", visible: document.visibilityState !== "hidden" });
+  worker.addEventListener(
+    "error", (event) => start.fail(`The page has failed: ${event.message || "its worker cannot be started"}`));
+  const show_visibility = (): void => server.post({kind: "visible", visible: document.visibilityState !== "hidden"});
   document.addEventListener("visibilitychange", show_visibility);
   show_visibility();
   server.on_change(() => {
     if (server.state.phase === "open" && server.worlds_known) {
       app ??= new App(server, tokens);
-      Object.assign(globalThis, { evod: { server, app } }); // for tests and for the console of the browser
+      Object.assign(globalThis, {evod: {server, app}}); // for tests and for the console of the browser
       if (!app.element.isConnected) {
         start.element.replaceWith(app.element);
       }

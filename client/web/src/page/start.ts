@@ -1,11 +1,11 @@
 // Start: what the page shows while there is nothing to watch: connecting, a token is needed, the server refuses or is not there.
-import { h, set_text } from "./dom";
-import type { Server } from "./server";
-import type { Tokens } from "./tokens";
+import {h, set_text} from "../widgets/dom";
+import type {Server} from "../world/server";
+import type {Tokens} from "../world/tokens";
 
 /** Takes the token out of the address at once, so that it does not appear in the history, in a bookmark or in a shared link.
  *  Returns null if the address contains none. */
-export function take_token(): string | null {
+export function take_token(): string|null {
   const fields = new URLSearchParams(location.hash.slice(1)), token = fields.get("token");
   if (token !== null) {
     fields.delete("token");
@@ -18,18 +18,26 @@ export function take_token(): string | null {
 export class Start {
   readonly element: HTMLElement;
   #title = h("h1", {}, "evod");
-  #text = h("p", { role: "status" });
-  #token = h("input", { class: "field grow", type: "password", id: "token", autocomplete: "off", spellcheck: "false" });
+  #text = h("p", {role: "status"});
+  #token = h("input", {class: "field grow", type: "password", id: "token", autocomplete: "off", spellcheck: "false"});
   #form: HTMLFormElement;
   #again: HTMLButtonElement;
 
   constructor() {
-    this.#form = h("form", { hidden: true },
-      h("label", { for: "token" }, "Token"),
-      h("div", { class: "row" }, this.#token, h("button", { type: "submit", class: "button button-primary" }, "Connect")),
-      h("p", { class: "hint" }, "The administrator of the server creates tokens with evod token add. The page keeps the token until this tab is closed. Leave the field empty if the server needs no token."));
-    this.#again = h("button", { type: "button", class: "button button-primary", hidden: true, onclick: () => location.reload() }, "Try again");
-    this.element = h("main", { class: "start" }, h("div", { class: "start-card" }, this.#title, this.#text, this.#form, this.#again));
+    this.#form = h(
+      "form", {hidden: true},
+      h("label",
+        { for: "token"
+        },
+        "Token"),
+      h("div", {class: "row"}, this.#token, h("button", {type: "submit", class: "button button-primary"}, "Connect")),
+      h("p", {class: "hint"},
+        "The administrator of the server creates tokens with evod token add. The page keeps the token until this tab is closed. Leave the field empty if the server needs no token."));
+    this.#again =
+      h("button", {type: "button", class: "button button-primary", hidden: true, onclick: () => location.reload()},
+        "Try again");
+    this.element =
+      h("main", {class: "start"}, h("div", {class: "start-card"}, this.#title, this.#text, this.#form, this.#again));
     this.say("Connecting to the server …");
   }
 
@@ -54,7 +62,7 @@ export class Start {
   }
 
   #refresh(server: Server, tokens: Tokens): void {
-    const { phase, message, code } = server.state, wants_token = phase === "refused" && code === "CODE_UNAUTHENTICATED";
+    const {phase, message, code} = server.state, wants_token = phase === "refused" && code === "CODE_UNAUTHENTICATED";
     const was_hidden = this.#form.hidden;
     this.#form.hidden = !wants_token;
     this.#again.hidden = !(phase === "refused" && !wants_token);

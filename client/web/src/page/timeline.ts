@@ -4,20 +4,26 @@
 //
 // Owner    App; one per pane.
 // Seeking  While a seek runs, only the newest moment that the user asks for is kept.
-import { marks_of } from "./change_text";
-import { guarded_button, set_allowed, set_attribute } from "./controls";
-import { h, set_text } from "./dom";
-import { with_separators } from "./numbers";
-import { joined_marks, marked_generations, TimeScale, type JoinedMark, type Moment } from "./time_scale";
-import type { Message } from "../messages";
-import type { ViewedWorld } from "./world";
+import {with_separators} from "../texts/numbers";
+import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
+import {h, set_text} from "../widgets/dom";
+import {marks_of} from "../plots/change_marks";
+
+import {joined_marks, marked_generations, TimeScale, type JoinedMark, type Moment} from "../world/time_scale";
+import type {Message} from "../core/messages";
+import type {ViewedWorld} from "../world/world";
 
 const label_room_px = 56; // between labels
 const mark_slots = 160; // marks on the line at most, of each kind
 const rebuild_ms = 250; // between two rebuilds of labels and marks
 const texts_max = 3; // of marks at the pointer
 const key_ticks = 60, page_generations = 10;
-const steps: { [key: string]: number } = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
+const steps: {[key: string]: number} = {
+  ArrowLeft: -1,
+  ArrowDown: -1,
+  ArrowRight: 1,
+  ArrowUp: 1
+};
 const extinctions_share_max = 0.1; // if more generations end so, extinctions are the rule and have no marks
 
 export interface TimelineContext {
@@ -30,13 +36,13 @@ export class Timeline {
   readonly element: HTMLElement;
 
   #line: HTMLElement;
-  #fill = h("div", { class: "time-fill" });
-  #knob = h("div", { class: "time-knob" });
-  #labels = h("div", { class: "time-labels" });
-  #marks = h("div", { class: "time-marks" });
-  #bubble = h("div", { class: "time-bubble", hidden: true });
-  #problem = h("p", { class: "hint grow" });
-  #place = h("span", { class: "time-place hint" });
+  #fill = h("div", {class: "time-fill"});
+  #knob = h("div", {class: "time-knob"});
+  #labels = h("div", {class: "time-labels"});
+  #marks = h("div", {class: "time-marks"});
+  #bubble = h("div", {class: "time-bubble", hidden: true});
+  #problem = h("p", {class: "hint grow"});
+  #place = h("span", {class: "time-place hint"});
   #first: HTMLButtonElement;
   #previous: HTMLButtonElement;
   #play: HTMLButtonElement;
@@ -47,19 +53,24 @@ export class Timeline {
   #ends: (() => void)[] = [];
   #width_px = 0;
   #pressed = false;
-  #dragged: number | null = null; // where the pointer is while it is pressed, and was until the last seek is answered
-  #hovered: number | null = null;
-  #waiting: Moment | null = null;
+  #dragged: number|null = null; // where the pointer is while it is pressed, and was until the last seek is answered
+  #hovered: number|null = null;
+  #waiting: Moment|null = null;
   #seeking = false;
   #extinctions: number[] = []; // generations, oldest first
   /** How far #extinctions describes the history. */
-  #scanned: { first: Message | undefined; island: number; generation: number } | null = null;
+  #scanned: {first: Message|undefined; island: number; generation: number}|null = null;
   #texts: JoinedMark[] = [];
   #drawn = ""; // what labels and marks show
   #rebuilt_ms = -rebuild_ms;
   #timer = 0;
 
-  constructor(private readonly world: ViewedWorld, private readonly context: TimelineContext) {
+  readonly #world: ViewedWorld;
+  readonly #context: TimelineContext;
+
+  constructor(world: ViewedWorld, context: TimelineContext) {
+    this.#world = world;
+    this.#context = context;
     const button = (label: string, name: string, act: () => void, classes = "button"): HTMLButtonElement => {
       const made = guarded_button(label, context.notify, act, classes);
       made.setAttribute("aria-label", name);
@@ -72,23 +83,33 @@ export class Timeline {
     this.#next = button(">", "Next generation", attempt(() => world.move_generations(1)), "button square");
     this.#last = button(">|", "Last tick", () => this.#go({}), "button square time-end");
     this.#live = guarded_button("Live", context.notify, attempt(() => world.back_to_live()), "button time-live");
-    const copy = h("button", {
-      type: "button", class: "button time-copy", title: "Copies a link that shows this moment in a browser (Ctrl+C).",
-      onclick: () => context.copy_link(world),
-    }, "Copy link");
-    this.#line = h("div", {
-      class: "time-line", tabindex: 0, role: "slider", "aria-label": "Time line: generation",
-      onpointerdown: (event: PointerEvent) => this.#press(event),
-      onpointermove: (event: PointerEvent) => this.#move(event),
-      onpointerup: () => this.#release(),
-      onpointercancel: () => this.#release(),
-      onpointerleave: () => this.#hover(null),
-      onkeydown: (event: KeyboardEvent) => this.#key(event),
-    }, this.#labels, h("div", { class: "time-bar" }, this.#fill), this.#marks, this.#knob, this.#bubble);
-    this.#buttons = h("div", { class: "time-buttons" },
-      this.#first, this.#previous, this.#play, this.#next, this.#last, this.#place);
-    this.element = h("div", { class: "timeline", role: "group", "aria-label": "Time line" },
-      this.#buttons, this.#line, this.#problem, h("div", { class: "time-buttons time-right" }, this.#live, copy));
+    const copy =
+      h("button", {
+        type: "button",
+        class: "button time-copy",
+        title: "Copies a link that shows this moment in a browser (Ctrl+C).",
+        onclick: () => context.copy_link(world),
+      },
+        "Copy link");
+    this.#line =
+      h("div", {
+        class: "time-line",
+        tabindex: 0,
+        role: "slider",
+        "aria-label": "Time line: generation",
+        onpointerdown: (event: PointerEvent) => this.#press(event),
+        onpointermove: (event: PointerEvent) => this.#move(event),
+        onpointerup: () => this.#release(),
+        onpointercancel: () => this.#release(),
+        onpointerleave: () => this.#hover(null),
+        onkeydown: (event: KeyboardEvent) => this.#key(event),
+      },
+        this.#labels, h("div", {class: "time-bar"}, this.#fill), this.#marks, this.#knob, this.#bubble);
+    this.#buttons =
+      h("div", {class: "time-buttons"}, this.#first, this.#previous, this.#play, this.#next, this.#last, this.#place);
+    this.element =
+      h("div", {class: "timeline", role: "group", "aria-label": "Time line"}, this.#buttons, this.#line, this.#problem,
+        h("div", {class: "time-buttons time-right"}, this.#live, copy));
     const observer = new ResizeObserver((entries) => {
       this.#width_px = entries[entries.length - 1]!.contentRect.width;
       this.#refresh();
@@ -105,13 +126,13 @@ export class Timeline {
 
   // ---- what is shown ----
 
-  #scale(): TimeScale | null {
-    const range = this.world.range;
-    return range && new TimeScale(range, (generation) => this.world.ticks_of(generation));
+  #scale(): TimeScale|null {
+    const range = this.#world.range;
+    return range && new TimeScale(range, (generation) => this.#world.ticks_of(generation));
   }
 
   #refresh(): void {
-    const { world } = this, scale = this.#scale(), snapshot = world.snapshot, is_past = world.is_replay;
+    const world = this.#world, scale = this.#scale(), snapshot = world.snapshot, is_past = world.is_replay;
     this.element.hidden = !world.name;
     set_attribute(this.element, "data-past", String(is_past));
     const problem = world.is_own_replay || !scale ? "" : world.past_problem;
@@ -139,19 +160,20 @@ export class Timeline {
   }
 
   /** The position of the moment that a seek leads to; null if the page does not know it. */
-  #place_of(scale: TimeScale, target: Moment | null): number | null {
+  #place_of(scale: TimeScale, target: Moment|null): number|null {
     if (target?.generation === undefined) {
       return null;
     }
-    const ticks = this.world.ticks_of(target.generation);
+    const ticks = this.#world.ticks_of(target.generation);
     return scale.part_of(target.generation, ticks && target.tick !== undefined ? ticks.first + target.tick : undefined);
   }
 
   #refresh_buttons(problem: string): void {
-    const { world } = this, { snapshot, range } = world, generation = snapshot?.generation ?? 1;
+    const world = this.#world, {snapshot, range} = world, generation = snapshot?.generation ?? 1;
     const runs = world.is_replay && world.state === "RUN_STATE_RUNNING";
-    const why = !world.is_replay ? "The world is live; P replays its run."
-      : world.is_own_replay ? "" : world.server.why_not("seek", world.shown);
+    const why = !world.is_replay ? "The world is live; P replays its run." :
+      world.is_own_replay        ? "" :
+                                   world.server.why_not("seek", world.shown);
     const is_first = range !== null && generation <= range.first_generation && snapshot?.generation_tick === 0;
     const is_last = range !== null && generation >= range.last_generation;
     this.#buttons.hidden = problem !== "";
@@ -171,7 +193,7 @@ export class Timeline {
 
   /** Rebuilds labels and marks if they have changed, but not more often than every rebuild_ms. */
   #rebuild_soon(scale: TimeScale): void {
-    const { world } = this, { first_generation, last_generation } = scale.range;
+    const world = this.#world, {first_generation, last_generation} = scale.range;
     const of_run = [world.name, world.island, first_generation, last_generation];
     const key = [...of_run, world.history.length, world.changes.length, Math.round(this.#width_px)].join(" ");
     if (key === this.#drawn || this.#timer !== 0) {
@@ -195,16 +217,19 @@ export class Timeline {
       return label;
     }));
     const inside = (generation: number): boolean => generation >= first_generation && generation <= last_generation;
-    const marks_at = (marks: { x: number; text: string }[]): JoinedMark[] => {
-      const shown = marks.filter(({ x }) => inside(x)).map(({ x, text }) => ({ part: scale.part_of(x), text }));
+    const marks_at = (marks: {x: number; text: string}[]): JoinedMark[] => {
+      const shown = marks.filter(({x}) => inside(x)).map(({x, text}) => ({part: scale.part_of(x), text}));
       return joined_marks(shown, mark_slots);
     };
     const changes = marks_at(marks_of(world.changes));
     const are_rare = this.#extinctions.length <= extinctions_share_max * (last_generation - first_generation + 1);
-    const extinctions = marks_at((are_rare ? this.#extinctions : []).map((generation) => (
-      { x: generation, text: `generation ${with_separators(generation)}: all organisms died before its end` })));
-    const mark = (kind: string) => ({ part }: { part: number }): HTMLElement => {
-      const made = h("i", { "data-kind": kind });
+    const extinctions = marks_at(
+      (are_rare ? this.#extinctions : [])
+        .map(
+          (generation) =>
+            ({x: generation, text: `generation ${with_separators(generation)}: all organisms died before its end`})));
+    const mark = (kind: string) => ({part}: {part: number}): HTMLElement => {
+      const made = h("i", {"data-kind": kind});
       made.style.left = percent(part);
       return made;
     };
@@ -214,10 +239,10 @@ export class Timeline {
 
   /** Adds the extinctions of the generations that have ended since the last call. */
   #scan_extinctions(): void {
-    const { history, island } = this.world;
+    const {history, island} = this.#world;
     if (!this.#scanned || this.#scanned.first !== history[0] || this.#scanned.island !== island) {
       this.#extinctions = [];
-      this.#scanned = { first: history[0], island, generation: 0 };
+      this.#scanned = {first: history[0], island, generation: 0};
     }
     const fresh: number[] = [];
     let i = history.length - 1;
@@ -239,8 +264,8 @@ export class Timeline {
       return;
     }
     const moment = scale.moment_at(at, this.#width_px), near = 4 / Math.max(this.#width_px, 1);
-    const texts = this.#texts.filter(({ part }) => Math.abs(part - at) <= near).flatMap((mark) => mark.texts);
-    const first = this.world.ticks_of(moment.generation)?.first;
+    const texts = this.#texts.filter(({part}) => Math.abs(part - at) <= near).flatMap((mark) => mark.texts);
+    const first = this.#world.ticks_of(moment.generation)?.first;
     const is_exact = moment.tick !== undefined && first !== undefined;
     const place = `generation ${with_separators(moment.generation)}`;
     const tick = is_exact ? `, tick ${with_separators(moment.tick! - first)}` : "";
@@ -256,7 +281,7 @@ export class Timeline {
   // ---- pointer and keys ----
 
   #part_at(event: PointerEvent): number {
-    const { left, width } = this.#line.getBoundingClientRect();
+    const {left, width} = this.#line.getBoundingClientRect();
     return Math.min(Math.max((event.clientX - left) / Math.max(width, 1), 0), 1);
   }
 
@@ -284,8 +309,8 @@ export class Timeline {
     this.#dragged = part;
     const scale = this.#scale();
     if (scale) {
-      const { generation, tick } = scale.moment_at(part, this.#width_px);
-      this.#go(tick === undefined ? { generation } : { tick });
+      const {generation, tick} = scale.moment_at(part, this.#width_px);
+      this.#go(tick === undefined ? {generation} : {tick});
     }
     this.#refresh();
   }
@@ -299,7 +324,7 @@ export class Timeline {
     this.#refresh();
   }
 
-  #hover(part: number | null): void {
+  #hover(part: number|null): void {
     this.#hovered = part;
     const scale = this.#scale();
     if (scale) {
@@ -308,7 +333,7 @@ export class Timeline {
   }
 
   #key(event: KeyboardEvent): void {
-    const { world } = this, by = steps[event.key] ?? 0;
+    const world = this.#world, by = steps[event.key] ?? 0;
     if (event.ctrlKey || event.altKey || event.metaKey) {
       return;
     }
@@ -331,14 +356,14 @@ export class Timeline {
   }
 
   #to_first(): void {
-    const range = this.world.range;
+    const range = this.#world.range;
     if (range) {
-      this.#go({ generation: range.first_generation });
+      this.#go({generation: range.first_generation});
     }
   }
 
   #attempt(what: () => Promise<unknown>): void {
-    void this.context.attempt(what);
+    void this.#context.attempt(what);
   }
 
   /** Shows a moment, after the running seek if there is one. */
@@ -354,7 +379,7 @@ export class Timeline {
     while (this.#waiting) {
       const moment = this.#waiting;
       this.#waiting = null;
-      if (!(await this.context.attempt(() => this.world.show_nearest(moment)))) {
+      if (!(await this.#context.attempt(() => this.#world.show_nearest(moment)))) {
         this.#waiting = null;
       }
     }
@@ -370,7 +395,8 @@ function percent(part: number): string {
   return `${(100 * part).toFixed(3)}%`;
 }
 
-function moment_text({ generation, tick }: Moment): string {
-  return generation !== undefined ? `generation ${with_separators(generation)}`
-    : tick !== undefined ? `tick ${with_separators(tick)}` : "the last tick";
+function moment_text({generation, tick}: Moment): string {
+  return generation !== undefined ? `generation ${with_separators(generation)}` :
+    tick !== undefined ? `tick ${with_separators(tick)}` :
+                         "the last tick";
 }

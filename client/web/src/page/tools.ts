@@ -1,9 +1,9 @@
 // Tools: what a click on the island does: select, place food, poison or a copy of an organism, or remove. Shown while the user
 // takes part.
-import type { Tool } from "../messages";
-import { guarded_button, set_allowed, set_attribute } from "./controls";
-import { h } from "./dom";
-import type { Pane } from "./pane";
+import type {Tool} from "../core/messages";
+import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
+import {h} from "../widgets/dom";
+import type {Pane} from "./pane";
 
 const tools: [Tool, string, string][] = [
   ["select", "Select", "A click in the island selects the organism there (Esc)."],
@@ -17,13 +17,17 @@ export class Tools {
   readonly element: HTMLElement;
   #buttons: HTMLButtonElement[];
 
-  constructor(private readonly pane: () => Pane, notify: (text: string) => void) {
+  readonly #pane: () => Pane;
+
+  constructor(pane: () => Pane, notify: (text: string) => void) {
+    this.#pane = pane;
     this.#buttons = tools.map(([tool, label]) => guarded_button(label, notify, () => pane().set_tool(tool)));
-    this.element = h("div", { class: "row tools", role: "group", "aria-label": "Click" }, h("span", {}, "Click"), ...this.#buttons);
+    this.element =
+      h("div", {class: "row tools", role: "group", "aria-label": "Click"}, h("span", {}, "Click"), ...this.#buttons);
   }
 
   refresh(taking_part: boolean): void {
-    const pane = this.pane();
+    const pane = this.#pane();
     this.element.hidden = !taking_part;
     if (pane.tool !== "select" && pane.tool_problem(pane.tool)) {
       pane.set_tool("select");

@@ -3,10 +3,17 @@
 //
 // Keyboard  The drawing is one tab stop. Arrow keys move between neurons; Enter steps through the connections of a
 // neuron.
-import { activation_text, brain_diagram, BrainDiagram, connection_text, connections_of, neighbour,
-  neuron_text } from "../organism/brain";
-import type { Message } from "../messages";
-import { h, set_text, svg } from "../page/dom";
+import {
+  activation_text,
+  brain_diagram,
+  BrainDiagram,
+  connection_text,
+  connections_of,
+  neighbour,
+  neuron_text
+} from "../organism/brain";
+import type {Message} from "../core/messages";
+import {h, set_text, svg} from "../widgets/dom";
 
 const character_width = 6.6; // of a label, in CSS pixels
 const number_width = 38; // of " −0.00"
@@ -15,27 +22,27 @@ const hint = "Circles: activation; lines: weights, wider if larger. Orange, soli
 
 export class BrainView {
   readonly element: HTMLElement;
-  readonly #drawing = h("div", { class: "brain-drawing" });
-  readonly #note = h("p", { class: "hint brain-note", "aria-live": "polite" });
-  #diagram: BrainDiagram | null = null;
+  readonly #drawing = h("div", {class: "brain-drawing"});
+  readonly #note = h("p", {class: "hint brain-note", "aria-live": "polite"});
+  #diagram: BrainDiagram|null = null;
   #weights: readonly number[] = [];
   #shape = "";
   #lines: SVGLineElement[] = [];
-  #circles: { group: SVGGElement; fill: SVGCircleElement | null; value: SVGTextElement | null }[] = [];
-  #neuron: number | null = null; // pointed at, or with the keyboard focus
-  #connection: number | null = null;
+  #circles: {group: SVGGElement; fill: SVGCircleElement | null; value: SVGTextElement | null}[] = [];
+  #neuron: number|null = null; // pointed at, or with the keyboard focus
+  #connection: number|null = null;
   #stop = 0; // the neuron that Tab leads to
 
   constructor() {
-    this.element = h("div", { class: "brain" }, this.#drawing, this.#note);
+    this.element = h("div", {class: "brain"}, this.#drawing, this.#note);
   }
 
   /** Returns false if the message does not describe a network with these weights. */
   update(brain: Message, weights: readonly number[], width: number): boolean {
-    const widest = (names: string[] | undefined): number =>
+    const widest = (names: string[]|undefined): number =>
       Math.max(0, ...(names ?? []).map((name) => name.length)) * character_width + 14;
-    const diagram = brain_diagram(brain, weights, width,
-      { inputs: widest(brain.input_names), outputs: widest(brain.output_names) + number_width });
+    const diagram = brain_diagram(
+      brain, weights, width, {inputs: widest(brain.input_names), outputs: widest(brain.output_names) + number_width});
     if (!diagram) {
       return false;
     }
@@ -57,7 +64,9 @@ export class BrainView {
 
   #build(diagram: BrainDiagram): void {
     const root = svg("svg", {
-      class: "brain-svg", viewBox: `0 0 ${diagram.width} ${diagram.height}`, width: diagram.width,
+      class: "brain-svg",
+      viewBox: `0 0 ${diagram.width} ${diagram.height}`,
+      width: diagram.width,
       height: diagram.height,
       role: "group",
       "aria-label": `Network: ${diagram.neurons.filter((neuron) => neuron.kind === "input").length} inputs, ` +
@@ -69,43 +78,51 @@ export class BrainView {
     this.#lines = diagram.connections.map((connection, i) => {
       const from = diagram.neurons[connection.from]!, to = diagram.neurons[connection.to]!;
       const line = svg("line", {
-        x1: from.x, y1: from.y, x2: to.x, y2: to.y, class: connection.weight < 0 ? "weight negative"
-          : "weight positive",
+        x1: from.x,
+        y1: from.y,
+        x2: to.x,
+        y2: to.y,
+        class: connection.weight < 0 ? "weight negative" : "weight positive",
         "stroke-width": (0.6 + 2.6 * connection.strength).toFixed(2),
         "stroke-opacity": (0.25 + 0.75 * connection.strength ** 1.5).toFixed(2),
       });
-      const target = svg("line", { x1: from.x, y1: from.y, x2: to.x, y2: to.y, class: "weight-target",
-        onmouseenter: () => this.#point(null, i) });
+      const target = svg(
+        "line",
+        {x1: from.x, y1: from.y, x2: to.x, y2: to.y, class: "weight-target", onmouseenter: () => this.#point(null, i)});
       root.append(line, target);
       return line;
     });
     this.#circles = diagram.neurons.map((neuron, i) => {
       const group = svg("g", {
-        class: "neuron " + neuron.kind, tabindex: i === this.#stop ? 0 : -1, role: "img",
-        onmouseenter: () => this.#point(i, null), onfocus: () => this.#take_focus(i),
+        class: "neuron " + neuron.kind,
+        tabindex: i === this.#stop ? 0 : -1,
+        role: "img",
+        onmouseenter: () => this.#point(i, null),
+        onfocus: () => this.#take_focus(i),
         onblur: () => this.#point(null, null),
       });
-      let fill: SVGCircleElement | null = null;
-      let value: SVGTextElement | null = null;
+      let fill: SVGCircleElement|null = null;
+      let value: SVGTextElement|null = null;
       if (neuron.kind === "bias") {
         const side = neuron.radius * 1.6;
-        group.append(svg("rect",
-          { class: "neuron-base", x: neuron.x - side / 2, y: neuron.y - side / 2, width: side, height: side }));
+        group.append(svg(
+          "rect", {class: "neuron-base", x: neuron.x - side / 2, y: neuron.y - side / 2, width: side, height: side}));
       } else {
-        fill = svg("circle", { class: "neuron-fill", cx: neuron.x, cy: neuron.y, r: neuron.radius });
-        group.append(svg("circle", { class: "neuron-base", cx: neuron.x, cy: neuron.y, r: neuron.radius }), fill);
+        fill = svg("circle", {class: "neuron-fill", cx: neuron.x, cy: neuron.y, r: neuron.radius});
+        group.append(svg("circle", {class: "neuron-base", cx: neuron.x, cy: neuron.y, r: neuron.radius}), fill);
       }
       const gap = neuron.radius + 5;
       if (neuron.layer === 0) {
-        group.append(svg("text", { class: "neuron-name", x: neuron.x - gap, y: neuron.y, "text-anchor": "end" },
+        group.append(svg(
+          "text", {class: "neuron-name", x: neuron.x - gap, y: neuron.y, "text-anchor": "end"},
           neuron.name.replace(/_/g, " ")));
       } else if (neuron.kind === "output") {
-        value = svg("text", { class: "neuron-value", x: diagram.width - 2, y: neuron.y, "text-anchor": "end" });
-        group.append(svg("text", { class: "neuron-name", x: neuron.x + gap, y: neuron.y },
-          neuron.name.replace(/_/g, " ")), value);
+        value = svg("text", {class: "neuron-value", x: diagram.width - 2, y: neuron.y, "text-anchor": "end"});
+        group.append(
+          svg("text", {class: "neuron-name", x: neuron.x + gap, y: neuron.y}, neuron.name.replace(/_/g, " ")), value);
       }
       root.append(group);
-      return { group, fill, value };
+      return {group, fill, value};
     });
     this.#drawing.replaceChildren(root);
     this.#emphasise();
@@ -113,7 +130,7 @@ export class BrainView {
 
   #show_activations(diagram: BrainDiagram): void {
     diagram.neurons.forEach((neuron, i) => {
-      const { group, fill, value } = this.#circles[i]!;
+      const {group, fill, value} = this.#circles[i]!;
       group.setAttribute("aria-label", neuron_text(diagram, i));
       if (fill) {
         fill.setAttribute("class", neuron.activation < 0 ? "neuron-fill negative" : "neuron-fill positive");
@@ -125,7 +142,7 @@ export class BrainView {
     });
   }
 
-  #point(neuron: number | null, connection: number | null): void {
+  #point(neuron: number|null, connection: number|null): void {
     if (neuron === this.#neuron && connection === this.#connection) {
       return;
     }
@@ -147,8 +164,11 @@ export class BrainView {
 
   #show_note(): void {
     const diagram = this.#diagram!;
-    set_text(this.#note, this.#connection !== null ? connection_text(diagram, diagram.connections[this.#connection]!)
-      : this.#neuron !== null ? neuron_text(diagram, this.#neuron) : hint);
+    set_text(
+      this.#note,
+      this.#connection !== null ? connection_text(diagram, diagram.connections[this.#connection]!) :
+        this.#neuron !== null   ? neuron_text(diagram, this.#neuron) :
+                                  hint);
   }
 
   #take_focus(neuron: number): void {
@@ -164,8 +184,8 @@ export class BrainView {
       this.#circles[neighbour(diagram, this.#stop, event.key)]!.group.focus();
     } else if (event.key === "Enter" || event.key === " ") {
       const all = connections_of(diagram, this.#stop);
-      this.#point(this.#stop, all[(this.#connection === null ? -1 : all.indexOf(this.#connection)) + 1] ?? all[0] ??
-        null);
+      this.#point(
+        this.#stop, all[(this.#connection === null ? -1 : all.indexOf(this.#connection)) + 1] ?? all[0] ?? null);
     } else {
       return;
     }

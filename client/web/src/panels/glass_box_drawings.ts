@@ -1,17 +1,26 @@
 // Drawings of the glass box: the wheel, a tournament, fitness by rank, the picks in order, copies by rank, the next
 // generation in a row, and one descendant with its parents. Each function returns a new element.
-import { contender_text } from "../breeding/caption";
-import { type Comparison, pick_columns, rank_columns } from "../breeding/comparison";
-import { delta_text, gene_blocks, gene_text, type GeneOrigin, type Inheritance, inheritance_of, mutation_text,
-  origin_text, other_genes_text } from "../breeding/inheritance";
-import { type BreedingRecord, rank_of, slot_of } from "../breeding/record";
-import { contestants_of } from "../breeding/tournament";
-import { point_at, rank_colour, ring_path, text_on, wheel_arcs } from "../breeding/wheel";
-import { gene_label } from "../organism/texts";
-import type { Message } from "../messages";
-import { h, svg } from "../page/dom";
-import { three_digits, with_separators, with_sign } from "../page/numbers";
-import { css } from "../render/look";
+import {contender_text} from "../breeding/caption";
+import {type Comparison, pick_columns, rank_columns} from "../breeding/comparison";
+import {
+  delta_text,
+  gene_blocks,
+  gene_text,
+  type GeneOrigin,
+  type Inheritance,
+  inheritance_of,
+  mutation_text,
+  origin_text,
+  other_genes_text
+} from "../breeding/inheritance";
+import {type BreedingRecord, rank_of, slot_of} from "../breeding/record";
+import {contestants_of} from "../breeding/tournament";
+import {point_at, rank_colour, ring_path, text_on, wheel_arcs} from "../breeding/wheel";
+import {gene_label} from "../organism/texts";
+import type {Message} from "../core/messages";
+import {h, svg} from "../widgets/dom";
+import {three_digits, with_separators, with_sign} from "../texts/numbers";
+import {css} from "../render/look";
 
 const columns_max = 12; // genes in the table of a descendant; more are drawn as small cells
 
@@ -20,8 +29,9 @@ function colour_of(record: BreedingRecord, rank: number): string {
 }
 
 function drawing(width: number, height: number, label: string): SVGSVGElement {
-  return svg("svg",
-    { class: "glass-drawing", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": label });
+  return svg(
+    "svg",
+    {class: "glass-drawing", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": label});
 }
 
 // ---- the wheel -------------------------------------------------------------------------------------------------
@@ -33,24 +43,36 @@ export class WheelDrawing {
   readonly #radius: number;
   readonly #slots: number;
 
-  constructor(private readonly record: BreedingRecord, private readonly size: number, private complete: boolean) {
+  readonly #record: BreedingRecord;
+  readonly #size: number;
+  #complete: boolean;
+
+  constructor(record: BreedingRecord, size: number, complete: boolean) {
+    this.#record = record;
+    this.#size = size;
+    this.#complete = complete;
     this.element = drawing(size, size, "");
     this.#radius = size / 2 - 24;
     this.#slots = record.contenders.length;
     const centre = size / 2, inner = this.#radius * 0.6, middle = (this.#radius + inner) / 2;
     const circumference = 2 * Math.PI * this.#radius;
-    this.element.append(svg("circle",
-      { class: "wheel-empty", cx: centre, cy: centre, r: middle, "stroke-width": this.#radius - inner }));
+    this.element.append(
+      svg("circle", {class: "wheel-empty", cx: centre, cy: centre, r: middle, "stroke-width": this.#radius - inner}));
     for (const arc of wheel_arcs(record.contenders, 1 / circumference)) {
       const colour = rank_colour(arc.rank, record.contender_count), length = (arc.end - arc.begin) * circumference;
-      this.element.append(svg("path", {
-        d: ring_path(centre, inner, this.#radius, arc.begin, arc.end), fill: css(colour), class: length > 4
-          ? "wheel-slot" : "",
-      }, svg("title", {}, arc.first === arc.last ? contender_text(arc.first, record.contenders[arc.first]!, complete)
-        : `organisms ${arc.first} to ${arc.last}: slots too narrow to draw`)));
+      this.element.append(svg(
+        "path", {
+          d: ring_path(centre, inner, this.#radius, arc.begin, arc.end),
+          fill: css(colour),
+          class: length > 4 ? "wheel-slot" : "",
+        },
+        svg(
+          "title", {},
+          arc.first === arc.last ? contender_text(arc.first, record.contenders[arc.first]!, complete) :
+                                   `organisms ${arc.first} to ${arc.last}: slots too narrow to draw`)));
       if (arc.first === arc.last && length > 24) {
-        const { x, y } = point_at(centre, middle, (arc.begin + arc.end) / 2);
-        this.element.append(svg("text", { class: "wheel-label", x, y, fill: text_on(colour) }, String(arc.first)));
+        const {x, y} = point_at(centre, middle, (arc.begin + arc.end) / 2);
+        this.element.append(svg("text", {class: "wheel-label", x, y, fill: text_on(colour)}, String(arc.first)));
       }
     }
     this.element.append(this.#pointers);
@@ -58,47 +80,56 @@ export class WheelDrawing {
 
   /** Whether the slots of this drawing are those of the record at this size. */
   fits(record: BreedingRecord, size: number, complete: boolean): boolean {
-    return record === this.record && size === this.size && complete === this.complete &&
+    return record === this.#record && size === this.#size && complete === this.#complete &&
       record.contenders.length === this.#slots;
   }
 
   show(index: number, caption: string): void {
-    const { record, size } = this, radius = this.#radius;
+    const record = this.#record, size = this.#size, radius = this.#radius;
     const centre = size / 2, inner = radius * 0.6;
     this.element.setAttribute("aria-label", caption);
     const parts: SVGElement[] = [];
     const pick = record.picks[index];
     const chosen = pick ? record.contenders[pick.organism ?? 0] : undefined;
     if (chosen && slot_of(chosen) > 0) {
-      parts.push(svg("path",
-        { class: "wheel-chosen", d: ring_path(centre, inner, radius, chosen.slot_begin ?? 0, chosen.slot_end ?? 0) }));
+      parts.push(svg(
+        "path",
+        {class: "wheel-chosen", d: ring_path(centre, inner, radius, chosen.slot_begin ?? 0, chosen.slot_end ?? 0)}));
     }
     // In stochastic universal sampling one spin sets all pointers; in roulette selection the wheel is spun for each
     // pick.
     const marks = record.choice("selection") === "stochastic_universal" ? record.picks.length : index;
-    const outline = (from: number, to: number): string => record.picks.slice(from, to).map((other) => {
-      const begin = point_at(centre, radius + 2, other.turns ?? 0),
-        end = point_at(centre, radius + 9, other.turns ?? 0);
-      return `M${begin.x.toFixed(1)} ${begin.y.toFixed(1)}L${end.x.toFixed(1)} ${end.y.toFixed(1)}`;
-    }).join("");
-    parts.push(svg("path", { class: "wheel-mark", d: outline(0, index) }),
-      svg("path", { class: "wheel-mark later", d: outline(index, marks) }));
+    const outline = (from: number, to: number): string =>
+      record.picks.slice(from, to)
+        .map((other) => {
+          const begin = point_at(centre, radius + 2, other.turns ?? 0),
+                end = point_at(centre, radius + 9, other.turns ?? 0);
+          return `M${begin.x.toFixed(1)} ${begin.y.toFixed(1)}L${end.x.toFixed(1)} ${end.y.toFixed(1)}`;
+        })
+        .join("");
+    parts.push(
+      svg("path", {class: "wheel-mark", d: outline(0, index)}),
+      svg("path", {class: "wheel-mark later", d: outline(index, marks)}));
     if (pick?.turns !== undefined) {
       const half = 7 / (2 * Math.PI * radius);
-      const points = [point_at(centre, radius + 1, pick.turns), point_at(centre, radius + 18, pick.turns - half),
-        point_at(centre, radius + 18, pick.turns + half)];
+      const points = [
+        point_at(centre, radius + 1, pick.turns), point_at(centre, radius + 18, pick.turns - half),
+        point_at(centre, radius + 18, pick.turns + half)
+      ];
       const from = point_at(centre, inner, pick.turns), to = point_at(centre, radius, pick.turns);
-      parts.push(svg("polygon",
-        { class: "pointer", points: points.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ") }),
-        svg("line", { class: "pointer-line", x1: from.x, y1: from.y, x2: to.x, y2: to.y }));
+      parts.push(
+        svg("polygon", {class: "pointer", points: points.map(({x, y}) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ")}),
+        svg("line", {class: "pointer-line", x1: from.x, y1: from.y, x2: to.x, y2: to.y}));
     }
     if (chosen) {
       const wide = inner > 65;
-      const lines = [`organism ${pick!.organism ?? 0}`,
+      const lines = [
+        `organism ${pick!.organism ?? 0}`,
         `rank ${with_separators(rank_of(chosen) + 1)}${wide ? ` of ${with_separators(record.contender_count)}` : ""}`,
-        `${three_digits(100 * slot_of(chosen))} %${wide ? " of the wheel" : ""}`];
-      lines.forEach((line, i) =>
-        parts.push(svg("text", { class: "wheel-centre", x: centre, y: centre + 19 * (i - 1) }, line)));
+        `${three_digits(100 * slot_of(chosen))} %${wide ? " of the wheel" : ""}`
+      ];
+      lines.forEach(
+        (line, i) => parts.push(svg("text", {class: "wheel-centre", x: centre, y: centre + 19 * (i - 1)}, line)));
     }
     this.#pointers.replaceChildren(...parts);
   }
@@ -111,149 +142,193 @@ export function draw_tournament(record: BreedingRecord, index: number, complete:
   const contestants = contestants_of(record, index);
   const fitness = contestants.map((contestant) => record.contenders[contestant.organism]?.fitness ?? 0);
   const least = Math.min(0, ...fitness), span = Math.max(0, ...fitness) - least || 1;
-  return h("ol", { class: "tournament", "aria-label": "Contestants in the order drawn" },
-      ...contestants.map((contestant, i) => {
-    const contender = record.contenders[contestant.organism];
-    const bar = h("span", { class: "tournament-bar" });
-    bar.style.width = `${(100 * (fitness[i]! - least) / span).toFixed(1)}%`;
-    bar.style.background = contender ? colour_of(record, rank_of(contender)) : "none";
-    return h("li", {
-      class: contestant.picked_now ? "tournament-row picked-now" : contestant.won ? "tournament-row won"
-        : "tournament-row",
-      title: contender ? contender_text(contestant.organism, contender, complete) : null,
-    }, h("span", { class: "tournament-id" }, String(contestant.organism)),
-      h("span", { class: "tournament-track" }, bar),
-    h("span", { class: "tournament-value" }, contender
-      ? three_digits(contender.fitness ?? 0) + (contestant.won ? " won" : "") : "…"));
-  }));
+  return h(
+    "ol", {class: "tournament", "aria-label": "Contestants in the order drawn"}, ...contestants.map((contestant, i) => {
+      const contender = record.contenders[contestant.organism];
+      const bar = h("span", {class: "tournament-bar"});
+      bar.style.width = `${(100 * (fitness[i]! - least) / span).toFixed(1)}%`;
+      bar.style.background = contender ? colour_of(record, rank_of(contender)) : "none";
+      return h(
+        "li", {
+          class: contestant.picked_now ? "tournament-row picked-now" :
+            contestant.won             ? "tournament-row won" :
+                                         "tournament-row",
+          title: contender ? contender_text(contestant.organism, contender, complete) : null,
+        },
+        h("span", {class: "tournament-id"}, String(contestant.organism)), h("span", {class: "tournament-track"}, bar),
+        h("span", {class: "tournament-value"},
+          contender ? three_digits(contender.fitness ?? 0) + (contestant.won ? " won" : "") : "…"));
+    }));
 }
 
 interface Bars {
   title: string;
   value_of: (rank: number) => number;
   copies: readonly number[]; // a dot marks each rank with copies
-  current: number | null; // a pointer marks this organism
+  current: number|null; // a pointer marks this organism
 }
 
 /** One bar per rank. If there are more ranks than places, each bar shows the mean of neighbouring ranks. */
-function draw_bars(record: BreedingRecord, comparison: Comparison, bars: Bars, width: number, height: number,
-    complete: boolean): SVGSVGElement {
+function draw_bars(
+  record: BreedingRecord, comparison: Comparison, bars: Bars, width: number, height: number,
+  complete: boolean): SVGSVGElement {
   const count = comparison.organisms.length, top = 38, bottom = height - 2;
   const values = comparison.organisms.map((_, rank) => bars.value_of(rank));
   const least = values.reduce((a, b) => Math.min(a, b), 0), most = values.reduce((a, b) => Math.max(a, b), 0),
-    span = most - least || 1;
+        span = most - least || 1;
   const y_of = (value: number): number => bottom - (value - least) / span * (bottom - top);
-  const range =
-    `${three_digits(values[0] ?? 0)} (rank 1) to ${three_digits(values[count - 1] ?? 0)} (rank ` +
+  const range = `${three_digits(values[0] ?? 0)} (rank 1) to ${three_digits(values[count - 1] ?? 0)} (rank ` +
     `${with_separators(count)})`;
   const image = drawing(width, height, `${bars.title} by rank: ${range}`);
-  image.append(svg("text", { class: "drawing-title", x: 0, y: 10 }, bars.title),
-    svg("text", { class: "drawing-quiet", x: width, y: 10, "text-anchor": "end" }, range));
+  image.append(
+    svg("text", {class: "drawing-title", x: 0, y: 10}, bars.title),
+    svg("text", {class: "drawing-quiet", x: width, y: 10, "text-anchor": "end"}, range));
   const columns = Math.min(count, Math.floor(width / 2)), each = width / columns, gap = each > 5 ? 1 : 0;
   for (let i = 0; i < columns; ++i) {
     const first = Math.floor(i * count / columns), end = Math.floor((i + 1) * count / columns);
-    const ranks = Array.from({ length: end - first }, (_, n) => first + n);
+    const ranks = Array.from({length: end - first}, (_, n) => first + n);
     const mean = ranks.reduce((sum, rank) => sum + values[rank]!, 0) / ranks.length;
     const y = Math.min(y_of(mean), y_of(0)), middle = i * each + (each - gap) / 2;
     const organism = comparison.organisms[first]!;
-    image.append(svg("rect", { class: "rank-bar", x: i * each, y, width: each - gap,
-      height: Math.max(y_of(mean), y_of(0)) - y + 1, fill: colour_of(record, first) },
-      svg("title", {}, ranks.length === 1 ? contender_text(organism, record.contenders[organism]!, complete)
-        : `ranks ${first + 1} to ${end}`)));
+    image.append(svg(
+      "rect", {
+        class: "rank-bar",
+        x: i * each,
+        y,
+        width: each - gap,
+        height: Math.max(y_of(mean), y_of(0)) - y + 1,
+        fill: colour_of(record, first)
+      },
+      svg(
+        "title", {},
+        ranks.length === 1 ? contender_text(organism, record.contenders[organism]!, complete) :
+                             `ranks ${first + 1} to ${end}`)));
     if (ranks.some((rank) => comparison.organisms[rank] === bars.current)) {
-      image.append(svg("polygon",
-        { class: "pointer", points: `${middle - 6},${y - 12} ${middle + 6},${y - 12} ${middle},${y - 2}` }));
+      image.append(svg(
+        "polygon", {class: "pointer", points: `${middle - 6},${y - 12} ${middle + 6},${y - 12} ${middle},${y - 2}`}));
     } else if (ranks.some((rank) => (bars.copies[rank] ?? 0) > 0)) {
-      image.append(svg("circle", { class: "picked-dot", cx: middle, cy: y - 5, r: 2.5 }));
+      image.append(svg("circle", {class: "picked-dot", cx: middle, cy: y - 5, r: 2.5}));
     }
   }
-  image.append(svg("line", { class: "axis", x1: 0, x2: width, y1: y_of(0), y2: y_of(0) }));
+  image.append(svg("line", {class: "axis", x1: 0, x2: width, y1: y_of(0), y2: y_of(0)}));
   return image;
 }
 
 /** Fitness by rank; for a wheel with fitness scaling, also the weights below. */
-export function draw_ranking(record: BreedingRecord, comparison: Comparison, copies: readonly number[],
-    current: number | null, width: number, complete: boolean): HTMLElement {
+export function draw_ranking(
+  record: BreedingRecord, comparison: Comparison, copies: readonly number[], current: number|null, width: number,
+  complete: boolean): HTMLElement {
   const method = record.choice("selection");
-  const scaled = (method === "roulette" || method === "stochastic_universal") &&
-    record.choice("fitness_scaling") !== "none";
+  const scaled =
+    (method === "roulette" || method === "stochastic_universal") && record.choice("fitness_scaling") !== "none";
   const weight_of = (rank: number): number => record.contenders[comparison.organisms[rank]!]!.weight ?? 0;
-  return h("div", { class: "panel" },
-    draw_bars(record, comparison, { title: "Fitness", value_of: (rank) => comparison.fitness[rank]!, copies, current },
-      width, scaled ? 150 : 220, complete),
-    scaled && draw_bars(record, comparison, { title: "Weight", value_of: weight_of, copies: [], current: null }, width,
-      150, complete));
+  return h(
+    "div", {class: "panel"},
+    draw_bars(
+      record, comparison, {title: "Fitness", value_of: (rank) => comparison.fitness[rank]!, copies, current}, width,
+      scaled ? 150 : 220, complete),
+    scaled &&
+      draw_bars(
+        record, comparison, {title: "Weight", value_of: weight_of, copies: [], current: null}, width, 150, complete));
 }
 
 /** The picks up to `index` in order, coloured by rank. */
-export function draw_picks(record: BreedingRecord, index: number, width: number,
-    go_to: (pick: number) => void): SVGSVGElement {
+export function draw_picks(
+  record: BreedingRecord, index: number, width: number, go_to: (pick: number) => void): SVGSVGElement {
   const columns = pick_columns(record, index, Math.floor(width / 2));
   const each = Math.min(14, width / Math.max(columns.length, 1));
   const image = drawing(width, 20, `Picks in order: ${index + 1} of ${record.pick_count}`);
-  columns.forEach((column, i) => image.append(svg("rect", {
-    class: column.rank === null ? "strip-cell empty"
-      : "strip-cell", x: i * each, y: 3, width: each - (each > 4 ? 1 : 0), height: 14,
-    fill: column.rank === null ? null : colour_of(record, column.rank), onclick: () => go_to(column.first),
-  }, svg("title", {}, `pick ${column.first + 1}`))));
+  columns.forEach(
+    (column, i) => image.append(svg(
+      "rect", {
+        class: column.rank === null ? "strip-cell empty" : "strip-cell",
+        x: i * each,
+        y: 3,
+        width: each - (each > 4 ? 1 : 0),
+        height: 14,
+        fill: column.rank === null ? null : colour_of(record, column.rank),
+        onclick: () => go_to(column.first),
+      },
+      svg("title", {}, `pick ${column.first + 1}`))));
   const now = columns.findIndex((column) => column.first <= index && index <= column.last);
-  image.append(svg("rect",
-    { class: "strip-current", x: Math.max(0, now * each - 1), y: 1, width: Math.max(each, 2) + 1, height: 18 }));
+  image.append(svg(
+    "rect", {class: "strip-current", x: Math.max(0, now * each - 1), y: 1, width: Math.max(each, 2) + 1, height: 18}));
   return image;
 }
 
 /** The observed and the expected copies of each rank with their standard errors; after all picks, the deviations below.
  *
  *  expected_share  the fraction of all picks that `copies` includes, 0 to 1 */
-export function draw_copies(record: BreedingRecord, comparison: Comparison, copies: readonly number[],
-    expected_share: number, complete: boolean, width: number): SVGSVGElement {
+export function draw_copies(
+  record: BreedingRecord, comparison: Comparison, copies: readonly number[], expected_share: number, complete: boolean,
+  width: number): SVGSVGElement {
   const margin = 26, right = width - margin, top = 22, bottom = 150, lower_top = bottom + 44,
-    lower_bottom = lower_top + 90;
+        lower_bottom = lower_top + 90;
   const columns = rank_columns(comparison, copies, expected_share, Math.floor(right / 3));
   const most = columns.reduce((a, column) => Math.max(a, column.copies, column.expected + column.standard_error), 1);
   const y_of = (value: number): number => bottom - Math.min(Math.max(value, 0) / most, 1) * (bottom - top);
   const deviation_max = 4, zero = (lower_top + lower_bottom) / 2; // larger deviations are drawn at the end of the axis
   const deviation_y = (off: number): number =>
     zero - Math.min(Math.max(off, -deviation_max), deviation_max) / deviation_max * (lower_bottom - lower_top) / 2;
-  const image = drawing(width, complete ? lower_bottom + 4
-    : bottom + 20, "Picks by rank, observed and expected; the table below has the numbers");
-  image.append(svg("text", { class: "drawing-title", x: 0, y: 10 }, "Picks by rank; line: expected ± standard error"));
+  const image = drawing(
+    width, complete ? lower_bottom + 4 : bottom + 20,
+    "Picks by rank, observed and expected; the table below has the numbers");
+  image.append(svg("text", {class: "drawing-title", x: 0, y: 10}, "Picks by rank; line: expected ± standard error"));
   const each = right / columns.length, gap = each > 5 ? 1 : 0;
   if (complete) {
-    image.append(svg("rect",
-      { class: "expected-band", x: 0, y: deviation_y(2), width: right, height: deviation_y(-2) - deviation_y(2) }),
-      svg("line", { class: "axis", x1: 0, x2: right, y1: zero, y2: zero }),
-      svg("text", { class: "drawing-title", x: 0, y: lower_top - 12 }, "Deviation in standard errors"),
-      svg("text", { class: "drawing-quiet", x: width, y: deviation_y(2), "text-anchor": "end" }, "+2"),
-      svg("text", { class: "drawing-quiet", x: width, y: deviation_y(-2), "text-anchor": "end" }, "−2"));
+    image.append(
+      svg(
+        "rect",
+        {class: "expected-band", x: 0, y: deviation_y(2), width: right, height: deviation_y(-2) - deviation_y(2)}),
+      svg("line", {class: "axis", x1: 0, x2: right, y1: zero, y2: zero}),
+      svg("text", {class: "drawing-title", x: 0, y: lower_top - 12}, "Deviation in standard errors"),
+      svg("text", {class: "drawing-quiet", x: width, y: deviation_y(2), "text-anchor": "end"}, "+2"),
+      svg("text", {class: "drawing-quiet", x: width, y: deviation_y(-2), "text-anchor": "end"}, "−2"));
   }
   columns.forEach((column, i) => {
     const x = i * each, middle = x + (each - gap) / 2;
-    const note = (column.first === column.last
-      ? `rank ${column.first + 1}: organism ${comparison.organisms[column.first]}, fitness ` +
-        `${three_digits(comparison.fitness[column.first]!)}`
-      : `ranks ${column.first + 1} to ${column.last + 1}`) +
-        `; picks ${with_separators(column.copies)}, expected ${three_digits(column.expected)} ± ` +
-        `${three_digits(column.standard_error)}` +
-      (complete ? `; ${with_sign(column.deviation)} standard errors` : "");
-    const group = svg("g", {}, svg("title", {}, note),
-      svg("rect", { class: "hover-area", x, y: top, width: each, height: (complete ? lower_bottom : bottom) - top }),
-      svg("rect", { class: "rank-bar", x, y: y_of(column.copies), width: each - gap,
-        height: bottom - y_of(column.copies), fill: colour_of(record, column.first) }),
-      svg("line", { class: "error-bar", x1: middle, x2: middle, y1: y_of(column.expected - column.standard_error),
-        y2: y_of(column.expected + column.standard_error) }),
-      svg("line",
-        { class: "expected-line", x1: x, x2: x + each, y1: y_of(column.expected), y2: y_of(column.expected) }));
+    const note = (column.first === column.last ?
+                    `rank ${column.first + 1}: organism ${comparison.organisms[column.first]}, fitness ` +
+                      `${three_digits(comparison.fitness[column.first]!)}` :
+                    `ranks ${column.first + 1} to ${column.last + 1}`) +
+      `; picks ${with_separators(column.copies)}, expected ${three_digits(column.expected)} ± ` +
+      `${three_digits(column.standard_error)}` + (complete ? `; ${with_sign(column.deviation)} standard errors` : "");
+    const group = svg(
+      "g", {}, svg("title", {}, note),
+      svg("rect", {class: "hover-area", x, y: top, width: each, height: (complete ? lower_bottom : bottom) - top}),
+      svg("rect", {
+        class: "rank-bar",
+        x,
+        y: y_of(column.copies),
+        width: each - gap,
+        height: bottom - y_of(column.copies),
+        fill: colour_of(record, column.first)
+      }),
+      svg("line", {
+        class: "error-bar",
+        x1: middle,
+        x2: middle,
+        y1: y_of(column.expected - column.standard_error),
+        y2: y_of(column.expected + column.standard_error)
+      }),
+      svg("line", {class: "expected-line", x1: x, x2: x + each, y1: y_of(column.expected), y2: y_of(column.expected)}));
     if (complete) {
       const from = deviation_y(Math.max(column.deviation, 0)), to = deviation_y(Math.min(column.deviation, 0));
-      group.append(svg("rect", { class: Math.abs(column.deviation) > 2 ? "deviation large"
-        : "deviation", x, y: from, width: each - gap, height: to - from + 1 }));
+      group.append(svg("rect", {
+        class: Math.abs(column.deviation) > 2 ? "deviation large" : "deviation",
+        x,
+        y: from,
+        width: each - gap,
+        height: to - from + 1
+      }));
     }
     image.append(group);
   });
-  image.append(svg("line", { class: "axis", x1: 0, x2: right, y1: bottom, y2: bottom }),
-    svg("text", { class: "drawing-quiet", x: 0, y: bottom + 12 }, "rank 1"),
-    svg("text", { class: "drawing-quiet", x: right, y: bottom + 12, "text-anchor": "end" },
+  image.append(
+    svg("line", {class: "axis", x1: 0, x2: right, y1: bottom, y2: bottom}),
+    svg("text", {class: "drawing-quiet", x: 0, y: bottom + 12}, "rank 1"),
+    svg(
+      "text", {class: "drawing-quiet", x: right, y: bottom + 12, "text-anchor": "end"},
       `rank ${with_separators(comparison.organisms.length)}`));
   return image;
 }
@@ -261,42 +336,48 @@ export function draw_copies(record: BreedingRecord, comparison: Comparison, copi
 // ---- descendants -----------------------------------------------------------------------------------------------
 
 /** The next generation as a row of cells: elite, survivors, children. The cell of `current` is framed. */
-export function draw_descendants(record: BreedingRecord, current: number | null, width: number,
-    go_to: (descendant: number) => void): SVGSVGElement {
+export function draw_descendants(
+  record: BreedingRecord, current: number|null, width: number, go_to: (descendant: number) => void): SVGSVGElement {
   const count = Math.max(record.descendant_count, 1), each = Math.min(14, width / count), gap = each > 4 ? 1 : 0;
-  const image = drawing(width, 20, current === null ? "The next generation"
-    : `Organism ${current} of ${record.descendant_count} in the next generation`);
+  const image = drawing(
+    width, 20,
+    current === null ? "The next generation" :
+                       `Organism ${current} of ${record.descendant_count} in the next generation`);
   const part = (begin: number, end: number, kind: string): void => {
-    for (let i = begin; i < end; i += gap > 0 ? 1 : end - begin) { // narrow cells form one bar
-      image.append(svg("rect", { class: `strip-cell ${kind}`, x: i * each, y: 3,
-        width: (gap > 0 ? 1 : end - begin) * each - gap, height: 14 }));
+    for (let i = begin; i<end; i += gap>0 ? 1 : end - begin) { // narrow cells form one bar
+      image.append(svg(
+        "rect",
+        {class: `strip-cell ${kind}`, x: i * each, y: 3, width: (gap > 0 ? 1 : end - begin) * each - gap, height: 14}));
     }
   };
   part(0, Math.min(record.elite_count, count), "elite");
   part(record.elite_count, Math.min(record.survivor_count, count), "survivor");
   part(record.survivor_count, record.descendant_count, "child");
   if (current !== null) {
-    image.append(svg("rect",
-      { class: "strip-current", x: Math.max(0, current * each - 1), y: 1, width: Math.max(each, 2) + 1, height: 18 }));
+    image.append(svg(
+      "rect",
+      {class: "strip-current", x: Math.max(0, current * each - 1), y: 1, width: Math.max(each, 2) + 1, height: 18}));
   }
-  image.addEventListener("click", (event) =>
-    go_to(Math.min(count - 1, Math.max(0, Math.floor((event.clientX - image.getBoundingClientRect().left) / each)))));
+  image.addEventListener(
+    "click",
+    (event) =>
+      go_to(Math.min(count - 1, Math.max(0, Math.floor((event.clientX - image.getBoundingClientRect().left) / each)))));
   return image;
 }
 
 export function descendants_legend(): HTMLElement {
-  const swatch = (kind: string, text: string): HTMLElement =>
-    h("span", {}, h("span", { class: `swatch ${kind}` }), text);
-  return h("p", { class: "hint glass-legend" }, swatch("elite", "elite"), swatch("survivor", "survivors"),
+  const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
+  return h(
+    "p", {class: "hint glass-legend"}, swatch("elite", "elite"), swatch("survivor", "survivors"),
     swatch("child", "children"));
 }
 
 function parents_legend(alone: boolean): HTMLElement {
-  const swatch = (kind: string, text: string): HTMLElement =>
-    h("span", {}, h("span", { class: `swatch ${kind}` }), text);
-  return h("p", { class: "hint glass-legend" }, !alone && swatch("first", "gene of the first parent"), !alone &&
-    swatch("second", "of the second parent"),
-    !alone && swatch("blended", "blended"), !alone && swatch("cut", "cut"), swatch("mutated", "mutated or clamped"));
+  const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
+  return h(
+    "p", {class: "hint glass-legend"}, !alone && swatch("first", "gene of the first parent"),
+    !alone && swatch("second", "of the second parent"), !alone && swatch("blended", "blended"),
+    !alone && swatch("cut", "cut"), swatch("mutated", "mutated or clamped"));
 }
 
 function kind_of(origin: GeneOrigin): string {
@@ -310,68 +391,92 @@ function kind_of(origin: GeneOrigin): string {
 export function draw_family(descendant: Message, gene_names: readonly string[], body_count: number): HTMLElement {
   const inheritance = inheritance_of(descendant);
   if (!inheritance) {
-    return h("p", { class: "error" }, "The genes of this organism are unknown: its lists contradict each other.");
+    return h("p", {class: "error"}, "The genes of this organism are unknown: its lists contradict each other.");
   }
   const all = inheritance.genes.length;
   const count = all > columns_max && body_count > 0 ? Math.min(body_count, all) : all;
-  const genes = Array.from({ length: count }, (_, gene) => gene);
-  const names = Array.from({ length: all }, (_, gene) => gene_names[gene] ?? `gene ${gene + 1}`);
-  const cell = (gene: number, value: number, kind: string, title: string): HTMLElement => h("td", {
-    class: `gene-cell ${kind}${inheritance.cuts.includes(gene) ? " cut" : ""}`, title,
-  }, gene_text(value));
-  const row = (label: string, kind: string, cells: (HTMLElement | null)[]): HTMLElement =>
-    h("tr", { class: kind }, h("th", { scope: "row" }, label), ...cells.map((content) => content ?? h("td", {})));
-  const parent_row = (second: boolean, label: string): HTMLElement =>
-    row(`${label} ${(second ? descendant.second_parent : descendant.first_parent) ?? 0}`, "parent-row",
+  const genes = Array.from({length: count}, (_, gene) => gene);
+  const names = Array.from({length: all}, (_, gene) => gene_names[gene] ?? `gene ${gene + 1}`);
+  const cell = (gene: number, value: number, kind: string, title: string): HTMLElement =>
+    h("td", {
+      class: `gene-cell ${kind}${inheritance.cuts.includes(gene) ? " cut" : ""}`,
+      title,
+    },
+      gene_text(value));
+  const row = (label: string, kind: string, cells: (HTMLElement|null)[]): HTMLElement =>
+    h("tr", {class: kind}, h("th", {scope: "row"}, label), ...cells.map((content) => content ?? h("td", {})));
+  const parent_row = (second: boolean, label: string): HTMLElement => row(
+    `${label} ${(second ? descendant.second_parent : descendant.first_parent) ?? 0}`, "parent-row",
     genes.map((gene) => {
       const origin = inheritance.crossed[gene]!, given = origin.blended || origin.from_second === second;
-      return cell(gene, (second ? inheritance.second : inheritance.first)[gene]!,
+      return cell(
+        gene, (second ? inheritance.second : inheritance.first)[gene]!,
         (second ? "second" : "first") + (given ? "" : " not-given"),
         `${gene_label(names[gene]!)}: ` +
-        `${given ? "the child received this gene" : "the child did not receive this gene"}`);
+          `${given ? "the child received this gene" : "the child did not receive this gene"}`);
     }));
   const rows = [parent_row(false, inheritance.alone ? "itself" : "parent")];
   if (!inheritance.alone) {
     rows.push(parent_row(true, "parent"), row("crossed", "crossed-row", genes.map((gene) => {
-      const origin = inheritance.crossed[gene]!;
-      return cell(gene, origin.value, kind_of(origin),
-        `${gene_label(names[gene]!)}: ` + (origin.blended ? "a mean of both parents"
-          : origin.from_second ? "from the second parent" : "from the first parent"));
-    })));
+                const origin = inheritance.crossed[gene]!;
+                return cell(
+                  gene, origin.value, kind_of(origin),
+                  `${gene_label(names[gene]!)}: ` +
+                    (origin.blended       ? "a mean of both parents" :
+                       origin.from_second ? "from the second parent" :
+                                            "from the first parent"));
+              })));
   }
   if (descendant.order_mutation) {
     rows.push(row(descendant.order_mutation.method ?? "order", "arranged-row", genes.map((gene) => {
       const origin = inheritance.arranged[gene]!;
-      return h("td", { class: `gene-cell ${kind_of(origin)}` }, gene_text(origin.value),
-        origin.gene === gene ? null : h("span", { class: "gene-moved" }, `from ${gene_label(names[origin.gene]!)}`));
+      return h(
+        "td", {class: `gene-cell ${kind_of(origin)}`}, gene_text(origin.value),
+        origin.gene === gene ? null : h("span", {class: "gene-moved"}, `from ${gene_label(names[origin.gene]!)}`));
     })));
   }
   if (inheritance.changes.some((change) => change.gene < count)) {
-    rows.push(row("mutations", "mutation-row", genes
-        .map((gene) =>
-          h("td", {}, ...inheritance.changes.filter((change) => change.gene === gene).map((change) => h("div", {
-      class: change.kind === "MUTATION_KIND_CLAMP" ? "gene-change clamped"
-        : "gene-change", title: `${delta_text(change.after - change.before)} by ${mutation_text(change.kind)}`,
-    }, h("span", {}, gene_text(change.before)), h("span", {}, `→ ${gene_text(change.after)}`),
-      h("span", {}, mutation_text(change.kind))))))));
+    rows.push(row(
+      "mutations", "mutation-row",
+      genes.map(
+        (gene) =>
+          h("td", {},
+            ...inheritance.changes.filter((change) => change.gene === gene)
+              .map(
+                (change) =>
+                  h("div", {
+                    class: change.kind === "MUTATION_KIND_CLAMP" ? "gene-change clamped" : "gene-change",
+                    title: `${delta_text(change.after - change.before)} by ${mutation_text(change.kind)}`,
+                  },
+                    h("span", {}, gene_text(change.before)), h("span", {}, `→ ${gene_text(change.after)}`),
+                    h("span", {}, mutation_text(change.kind))))))));
   }
   const final: number[] = descendant.genes ?? inheritance.genes;
-  rows.push(row(`organism ${descendant.id ?? 0}`, "organism-row", genes.map((gene) => h("td", {
-    class: `gene-cell ${kind_of(inheritance.arranged[gene]!)}${inheritance.changed[gene] ? " mutated" : ""}`,
-    title: origin_text(inheritance, gene, gene_label(names[gene]!), descendant),
-  }, gene_text(final[gene] ?? inheritance.genes[gene]!)))));
-  return h("div", { class: "panel" },
-    h("div", { class: "family-scroll" }, h("table", { class: "family-table" },
-      h("thead", {}, h("tr", {}, h("td", {}),
-        ...genes.map((gene) => h("th", { scope: "col" }, gene_label(names[gene]!))))), h("tbody", {}, ...rows))),
+  rows.push(row(
+    `organism ${descendant.id ?? 0}`, "organism-row",
+    genes.map(
+      (gene) =>
+        h("td", {
+          class: `gene-cell ${kind_of(inheritance.arranged[gene]!)}${inheritance.changed[gene] ? " mutated" : ""}`,
+          title: origin_text(inheritance, gene, gene_label(names[gene]!), descendant),
+        },
+          gene_text(final[gene] ?? inheritance.genes[gene]!)))));
+  return h(
+    "div", {class: "panel"},
+    h("div", {class: "family-scroll"},
+      h("table", {class: "family-table"},
+        h("thead", {},
+          h("tr", {}, h("td", {}), ...genes.map((gene) => h("th", {scope: "col"}, gene_label(names[gene]!))))),
+        h("tbody", {}, ...rows))),
     all > count && draw_other_genes(inheritance, count, names, descendant), parents_legend(inheritance.alone));
 }
 
 /** The genes that are not columns as small cells in the colours of their parents, neuron by neuron. */
-function draw_other_genes(inheritance: Inheritance, first: number, names: readonly string[],
-    descendant: Message): HTMLElement {
-  const note = h("p", { class: "hint gene-note", "aria-live": "polite" },
-    "Point at a cell to read its gene; with the keyboard: arrow keys.");
+function draw_other_genes(
+  inheritance: Inheritance, first: number, names: readonly string[], descendant: Message): HTMLElement {
+  const note =
+    h("p", {class: "hint gene-note", "aria-live": "polite"},
+      "Point at a cell to read its gene; with the keyboard: arrow keys.");
   const cells: HTMLElement[] = [];
   const show = (event: Event): void => { // texts are made when they are read: there may be thousands of cells
     const cell = event.target as HTMLElement, gene = cell.dataset.gene;
@@ -381,20 +486,24 @@ function draw_other_genes(inheritance: Inheritance, first: number, names: readon
     }
   };
   const blocks = gene_blocks(names, first)
-    .map((block) =>
-      h("span", { class: "gene-block" }, h("span", { class: "gene-block-label" }, gene_label(block.label)),
-    ...Array.from({ length: block.count }, (_, i) => {
-      const gene = block.first + i, origin = inheritance.arranged[gene]!;
-      const cell = h("span", {
-        class: `gene-dot ${kind_of(origin)}${inheritance.changed[gene] ? " mutated" : ""}`,
-        role: "img", tabindex: cells.length === 0 ? 0 : -1, "data-gene": gene,
-      });
-      cells.push(cell);
-      return cell;
-    })));
+                   .map(
+                     (block) =>
+                       h("span", {class: "gene-block"}, h("span", {class: "gene-block-label"}, gene_label(block.label)),
+                         ...Array.from({length: block.count}, (_, i) => {
+                           const gene = block.first + i, origin = inheritance.arranged[gene]!;
+                           const cell = h("span", {
+                             class: `gene-dot ${kind_of(origin)}${inheritance.changed[gene] ? " mutated" : ""}`,
+                             role: "img",
+                             tabindex: cells.length === 0 ? 0 : -1,
+                             "data-gene": gene,
+                           });
+                           cells.push(cell);
+                           return cell;
+                         })));
   const press = (event: KeyboardEvent): void => {
-    const step = event.key === "ArrowRight" || event.key === "ArrowDown" ? 1
-      : event.key === "ArrowLeft" || event.key === "ArrowUp" ? -1 : 0;
+    const step = event.key === "ArrowRight" || event.key === "ArrowDown" ? 1 :
+      event.key === "ArrowLeft" || event.key === "ArrowUp"               ? -1 :
+                                                                           0;
     const at = cells.indexOf(event.target as HTMLElement), next = cells[at + step];
     if (step === 0 || at < 0) {
       return;
@@ -407,7 +516,16 @@ function draw_other_genes(inheritance: Inheritance, first: number, names: readon
       next.focus();
     }
   };
-  return h("div", { class: "other-genes" }, h("p", {}, other_genes_text(inheritance, first, descendant)),
-    h("div", { class: "gene-blocks", role: "group", "aria-label": "Other genes", onkeydown: press, onmouseover: show,
-      onfocusin: show }, ...blocks), note);
+  return h(
+    "div", {class: "other-genes"}, h("p", {}, other_genes_text(inheritance, first, descendant)),
+    h("div", {
+      class: "gene-blocks",
+      role: "group",
+      "aria-label": "Other genes",
+      onkeydown: press,
+      onmouseover: show,
+      onfocusin: show
+    },
+      ...blocks),
+    note);
 }

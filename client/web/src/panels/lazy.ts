@@ -1,12 +1,12 @@
 // LazyPanel: a panel whose code is loaded when it is first shown, so that the page itself loads faster.
-import { h } from "../page/dom";
-import type { Panel } from "./panel";
+import {h} from "../widgets/dom";
+import type {Panel} from "../world/panel_context";
 
 export class LazyPanel implements Panel {
-  readonly element = h("div", { class: "lazy-panel" });
-  #panel: Panel | null = null;
+  readonly element = h("div", {class: "lazy-panel"});
+  #panel: Panel|null = null;
   #loading = false;
-  #subject: { [key: string]: unknown } | null = null; // of a show() before the code was loaded
+  #subject: {[key: string]: unknown}|null = null; // of a show() before the code was loaded
 
   constructor(readonly name: string, readonly title: string, readonly load: () => Promise<Panel>) {}
 
@@ -23,7 +23,7 @@ export class LazyPanel implements Panel {
     }
   }
 
-  show(subject: { [key: string]: unknown }): void {
+  show(subject: {[key: string]: unknown}): void {
     if (this.#panel) {
       this.#panel.show?.(subject);
     } else {

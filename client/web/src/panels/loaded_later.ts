@@ -1,5 +1,5 @@
 // The panels that need most code. They are a file of their own, panels.js, which the page loads when one of them is shown.
-export { FamilyPanel } from "./family";
-export { GlassBoxPanel } from "./glass_box";
-export { OrganismPanel } from "./organism";
-export { PlotsPanel } from "./plots";
+export {FamilyPanel} from "./family";
+export {GlassBoxPanel} from "./glass_box";
+export {OrganismPanel} from "./organism";
+export {PlotsPanel} from "./plots";

@@ -7,21 +7,26 @@ import standard from "../../../../experiments/default.json";
 import islands from "../../../../experiments/islands.json";
 import rooy from "../../../../experiments/rooy.json";
 import trade_offs from "../../../../experiments/trade_offs.json";
-import { Dialog, set_attribute } from "../page/controls";
-import { h, set_text } from "../page/dom";
-import { with_separators } from "../page/numbers";
-import { capitalised } from "../page/texts";
-import type { Message } from "../messages";
-import type { PanelContext } from "./panel";
+import {with_separators} from "../texts/numbers";
+import {capitalised} from "../texts/texts";
+import {Dialog, set_attribute} from "../widgets/controls";
+import {h, set_text} from "../widgets/dom";
 
-const presets: [string, { description: string }][] = [["default", standard], ["annealing", annealing], ["brains", brains],
-  ["classic", classic], ["islands", islands], ["rooy", rooy], ["trade_offs", trade_offs]];
+import type {Message} from "../core/messages";
+import type {PanelContext} from "../world/panel_context";
+
+const presets: [string, {description: string}][] = [
+  ["default", standard], ["annealing", annealing], ["brains", brains], ["classic", classic], ["islands", islands],
+  ["rooy", rooy], ["trade_offs", trade_offs]
+];
 const name_bytes_max = 64;
 const seed_max = (1n << 64n) - 1n;
 
 /** What is wrong with the name of a world; empty if nothing is. */
 export function name_problem(field: string, name: string): string {
-  return /^[A-Za-z0-9_-]{1,64}$/.test(name) ? "" : `${field}: got "${name}", allowed 1 to ${name_bytes_max} characters of a-z A-Z 0-9 _ -`;
+  return /^[A-Za-z0-9_-]{1,64}$/.test(name) ?
+    "" :
+    `${field}: got "${name}", allowed 1 to ${name_bytes_max} characters of a-z A-Z 0-9 _ -`;
 }
 
 /** `base`, or `base` with the first number that makes it unused: "default-2". */
@@ -30,7 +35,7 @@ export function unused_name(base: string, used: string[]): string {
     return base;
   }
   const stem = base.replace(/-\d+$/, "");
-  for (let number = 2; ; ++number) {
+  for (let number = 2;; ++number) {
     const end = `-${number}`, name = stem.slice(0, name_bytes_max - end.length) + end;
     if (!used.includes(name)) {
       return name;
@@ -40,52 +45,95 @@ export function unused_name(base: string, used: string[]): string {
 
 /** The text of an experiment file with the parameters and the schedule of a ParameterSet. */
 export function experiment_json(set: Message): string {
-  const value_of = (value: Message | undefined): unknown => value?.real ?? value?.count ?? value?.flag ?? value?.choice;
-  const experiment: { [name: string]: unknown } = {};
+  const value_of = (value: Message|undefined): unknown => value?.real ?? value?.count ?? value?.flag ?? value?.choice;
+  const experiment: {[name: string]: unknown} = {};
   for (const parameter of set.parameters ?? []) {
     const now = value_of(parameter.pending ?? parameter.value);
     const later: Message[] = (set.schedule ?? []).filter((one: Message) => one.name === parameter.name);
-    experiment[parameter.name] = later.length === 0 ? now
-      : Object.fromEntries([["1", now], ...later.map((one) => [String(one.generation), value_of(one.value)])]);
+    experiment[parameter.name] = later.length === 0 ?
+      now :
+      Object.fromEntries([["1", now], ...later.map((one) => [String(one.generation), value_of(one.value)])]);
   }
   return JSON.stringify(experiment, null, 2);
 }
 
 export class NewWorldDialog {
   #dialog = new Dialog("New world", "new-world");
-  #choices = h("div", { class: "choices", role: "radiogroup", "aria-label": "Experiment" });
-  #name = h("input", { class: "field grow", id: "new-world-name", maxlength: name_bytes_max, spellcheck: "false", autocomplete: "off" });
-  #seed = h("input", { class: "field grow", id: "new-world-seed", inputmode: "numeric", placeholder: "empty: chosen at random", autocomplete: "off" });
-  #text = h("textarea", { class: "field", rows: 8, spellcheck: "false", "aria-label": "Text of the experiment" });
-  #beside = h("input", { type: "checkbox" });
-  #error = h("p", { class: "error grow", role: "alert" });
+  #choices = h("div", {class: "choices", role: "radiogroup", "aria-label": "Experiment"});
+  #name =
+    h("input",
+      {class: "field grow", id: "new-world-name", maxlength: name_bytes_max, spellcheck: "false", autocomplete: "off"});
+  #seed = h("input", {
+    class: "field grow",
+    id: "new-world-seed",
+    inputmode: "numeric",
+    placeholder: "empty: chosen at random",
+    autocomplete: "off"
+  });
+  #text = h("textarea", {class: "field", rows: 8, spellcheck: "false", "aria-label": "Text of the experiment"});
+  #beside = h("input", {type: "checkbox"});
+  #error = h("p", {class: "error grow", role: "alert"});
   #create: HTMLButtonElement;
   #same_label = h("span", {});
   #same: HTMLInputElement;
   #name_edited = false;
 
-  constructor(private readonly context: PanelContext) {
-    presets.forEach(([name, { description }], i) => this.#choices.append(this.#choice(h("span", {}, name), description, i === 0, () => this.#choose(name))));
-    const same = this.#choice(this.#same_label, "The parameters and the schedule that this world has now.", false, () => void this.#choose_same());
+  readonly #context: PanelContext;
+
+  constructor(context: PanelContext) {
+    this.#context = context;
+    presets.forEach(
+      ([name, {description}], i) =>
+        this.#choices.append(this.#choice(h("span", {}, name), description, i === 0, () => this.#choose(name))));
+    const same = this.#choice(
+      this.#same_label, "The parameters and the schedule that this world has now.", false,
+      () => void this.#choose_same());
     this.#same = same.querySelector("input")!;
     this.#choices.append(same);
-    const file = h("input", { type: "file", accept: ".json,application/json,text/plain", class: "visually-hidden", tabindex: -1, onchange: () => void this.#read(file) }) as HTMLInputElement;
+    const file = h("input", {
+                   type: "file",
+                   accept: ".json,application/json,text/plain",
+                   class: "visually-hidden",
+                   tabindex: -1,
+                   onchange: () => void this.#read(file)
+                 }) as HTMLInputElement;
     this.#name.addEventListener("input", () => (this.#name_edited = true));
     this.#text.addEventListener("input", () => this.#choose_none());
-    this.#create = h("button", { type: "submit", class: "button button-primary" }, "Create");
-    this.#dialog.body.append(h("form", { class: "panel", onsubmit: (event: Event) => { event.preventDefault(); void this.#send(); } },
+    this.#create = h("button", {type: "submit", class: "button button-primary"}, "Create");
+    this.#dialog.body.append(h(
+      "form", {
+        class: "panel",
+        onsubmit: (event: Event) => {
+          event.preventDefault();
+          void this.#send();
+        }
+      },
       this.#choices,
-      h("div", { class: "labelled" }, h("label", { for: "new-world-name" }, "name"), this.#name, h("label", { for: "new-world-seed" }, "seed"), this.#seed),
-      h("p", { class: "hint" }, "The seed determines everything that is random. Two worlds with equal seeds and parameters are equal."),
+      h("div", {class: "labelled"},
+        h("label",
+          { for: "new-world-name"
+          },
+          "name"),
+        this.#name,
+        h("label",
+          { for: "new-world-seed"
+          },
+          "seed"),
+        this.#seed),
+      h("p", {class: "hint"},
+        "The seed determines everything that is random. Two worlds with equal seeds and parameters are equal."),
       h("details", {}, h("summary", {}, "Parameters as text"),
-        h("p", { class: "hint" }, "The text of the experiment. A parameter that it does not name has its default value."), this.#text,
-        h("div", { class: "row" }, h("button", { type: "button", class: "button", onclick: () => file.click() }, "Open a file …"), file)),
-      h("label", { class: "check" }, this.#beside, "show it beside this world"),
-      h("div", { class: "row dialog-end" }, this.#error, h("button", { type: "button", class: "button", onclick: () => this.#dialog.close() }, "Cancel"), this.#create)));
+        h("p", {class: "hint"}, "The text of the experiment. A parameter that it does not name has its default value."),
+        this.#text,
+        h("div", {class: "row"},
+          h("button", {type: "button", class: "button", onclick: () => file.click()}, "Open a file …"), file)),
+      h("label", {class: "check"}, this.#beside, "show it beside this world"),
+      h("div", {class: "row dialog-end"}, this.#error,
+        h("button", {type: "button", class: "button", onclick: () => this.#dialog.close()}, "Cancel"), this.#create)));
   }
 
   open(): void {
-    const world = this.context.world();
+    const world = this.#context.world();
     this.#name_edited = false;
     set_text(this.#error, "");
     set_attribute(this.#name, "aria-invalid", null);
@@ -99,7 +147,9 @@ export class NewWorldDialog {
   }
 
   #choice(label: HTMLElement, description: string, checked: boolean, act: () => void): HTMLElement {
-    return h("label", { class: "choice" }, h("input", { type: "radio", name: "experiment", checked, onchange: act }), label, h("span", { class: "hint" }, description));
+    return h(
+      "label", {class: "choice"}, h("input", {type: "radio", name: "experiment", checked, onchange: act}), label,
+      h("span", {class: "hint"}, description));
   }
 
   #choose(name: string): void {
@@ -108,9 +158,9 @@ export class NewWorldDialog {
   }
 
   async #choose_same(): Promise<void> {
-    const world = this.context.world();
-    await this.context.attempt(async () => {
-      this.#text.value = experiment_json(await this.context.server.request("get_parameters", { world: world.shown }));
+    const world = this.#context.world();
+    await this.#context.attempt(async () => {
+      this.#text.value = experiment_json(await this.#context.server.request("get_parameters", {world: world.shown}));
       this.#suggest(world.name);
     });
   }
@@ -124,7 +174,7 @@ export class NewWorldDialog {
 
   #suggest(base: string): void {
     if (!this.#name_edited) {
-      this.#name.value = unused_name(base, this.context.server.world_names);
+      this.#name.value = unused_name(base, this.#context.server.world_names);
     }
   }
 
@@ -132,7 +182,8 @@ export class NewWorldDialog {
     const file = field.files?.[0];
     if (file) {
       this.#text.value = await file.text();
-      this.#suggest(file.name.replace(/\.json$/, "").replace(/[^A-Za-z0-9_-]/g, "_").slice(0, name_bytes_max) || "world");
+      this.#suggest(
+        file.name.replace(/\.json$/, "").replace(/[^A-Za-z0-9_-]/g, "_").slice(0, name_bytes_max) || "world");
       this.#choose_none();
     }
     field.value = "";
@@ -141,7 +192,8 @@ export class NewWorldDialog {
   async #send(): Promise<void> {
     const name = this.#name.value.trim(), seed = this.#seed.value.trim();
     const seed_wrong = seed !== "" && !(/^\d{1,20}$/.test(seed) && BigInt(seed) <= seed_max);
-    const problem = name_problem("name", name) || (seed_wrong ? `seed: got "${seed}", allowed whole numbers from 0 to ${with_separators(seed_max)}` : "");
+    const problem = name_problem("name", name) ||
+      (seed_wrong ? `seed: got "${seed}", allowed whole numbers from 0 to ${with_separators(seed_max)}` : "");
     set_attribute(this.#name, "aria-invalid", name_problem("name", name) ? "true" : null);
     set_attribute(this.#seed, "aria-invalid", seed_wrong ? "true" : null);
     set_text(this.#error, capitalised(problem));
@@ -150,12 +202,13 @@ export class NewWorldDialog {
     }
     this.#create.disabled = true;
     try {
-      await this.context.server.request("create_world", { name, experiment_json: this.#text.value, ...(seed ? { seed: BigInt(seed) } : {}) });
+      await this.#context.server.request(
+        "create_world", {name, experiment_json: this.#text.value, ...(seed ? {seed: BigInt(seed)} : {})});
       this.#dialog.close();
       if (this.#beside.checked) {
-        this.context.show_beside(name);
+        this.#context.show_beside(name);
       } else {
-        this.context.world().show(name);
+        this.#context.world().show(name);
       }
     } catch (error) {
       set_text(this.#error, (error as Error).message);

@@ -1,12 +1,13 @@
 // WorldsPanel: the worlds of the server with their state, the islands of the shown world, and the commands that create, fork and
 // delete worlds.
-import { guarded_button, set_allowed } from "../page/controls";
-import { h, set_text } from "../page/dom";
-import { tenths, with_separators } from "../page/numbers";
-import { speed_text, state_word } from "../page/texts";
-import type { Message } from "../messages";
-import { name_problem, NewWorldDialog, unused_name } from "./new_world";
-import type { Panel, PanelContext } from "./panel";
+import {tenths, with_separators} from "../texts/numbers";
+import {speed_text, state_word} from "../texts/texts";
+import {guarded_button, set_allowed} from "../widgets/controls";
+import {h, set_text} from "../widgets/dom";
+
+import type {Message} from "../core/messages";
+import {name_problem, NewWorldDialog, unused_name} from "./new_world";
+import type {Panel, PanelContext} from "../world/panel_context";
 
 const poll_ms = 1000;
 
@@ -21,57 +22,105 @@ export class WorldsPanel implements Panel {
   #islands_table: HTMLElement;
   #create: HTMLButtonElement;
   #fork: HTMLButtonElement;
-  #delete: HTMLButtonElement;
-  #why = h("p", { class: "hint" });
+#delete : HTMLButtonElement;
+  #why = h("p", {class: "hint"});
   #confirm: HTMLElement;
   #question = h("p", {});
   #deleted = "";
   #fork_form: HTMLFormElement;
-  #fork_name = h("input", { class: "field grow", "aria-label": "Name of the new world", maxlength: 64, spellcheck: "false" });
+  #fork_name =
+    h("input", {class: "field grow", "aria-label": "Name of the new world", maxlength: 64, spellcheck: "false"});
   #fork_from = h("p", {});
-  #fork_error = h("p", { class: "error", role: "alert" });
-  #dialog: NewWorldDialog | null = null;
-  #statistics: Message | null = null;
+  #fork_error = h("p", {class: "error", role: "alert"});
+  #dialog: NewWorldDialog|null = null;
+  #statistics: Message|null = null;
   #polled = 0;
   #pending = false;
 
-  constructor(private readonly context: PanelContext) {
-    const { notify } = context;
+  readonly #context: PanelContext;
+
+  constructor(context: PanelContext) {
+    this.#context = context;
+    const {notify} = context;
     this.#create = guarded_button("New world …", notify, () => this.#open_dialog());
     this.#fork = guarded_button("Fork …", notify, () => this.#ask_fork());
     this.#delete = guarded_button("Delete …", notify, () => this.#ask_delete());
-    this.#confirm = h("div", { class: "confirm", hidden: true }, this.#question,
-      h("p", { class: "hint" }, "If the server stores runs, the run file stays in its folder."),
-      h("div", { class: "row" },
-        h("button", { type: "button", class: "button button-danger", onclick: () => void this.#do_delete() }, "Delete the world"),
-        h("button", { type: "button", class: "button", onclick: () => this.#close(this.#confirm, this.#delete) }, "Cancel")));
-    this.#fork_form = h("form", { class: "confirm", hidden: true, onsubmit: (event: Event) => { event.preventDefault(); void this.#do_fork(); } }, this.#fork_from,
-      h("div", { class: "row" }, this.#fork_name, h("button", { type: "submit", class: "button button-primary" }, "Fork"),
-        h("button", { type: "button", class: "button", onclick: () => this.#close(this.#fork_form, this.#fork) }, "Cancel")), this.#fork_error);
-    this.#islands_table = h("table", { class: "table" }, h("thead", {}, h("tr", {}, ...["Island", "Alive", "Mean health", "Last best fitness"].map((text, i) => h("th", { scope: "col", class: i ? "number" : null }, text)))), this.#islands);
-    this.element = h("div", { class: "panel panel-worlds" },
-      h("table", { class: "table" }, h("thead", {}, h("tr", {}, ...["World", "State", "Generation", "Tick", "Speed"].map((text, i) => h("th", { scope: "col", class: i > 1 ? "number" : null }, text)))), this.#worlds),
-      h("div", { class: "row" }, this.#create, this.#fork, this.#delete), this.#why, this.#confirm, this.#fork_form,
-      this.#islands_title, this.#islands_table);
+    this.#confirm =
+      h("div", {class: "confirm", hidden: true}, this.#question,
+        h("p", {class: "hint"}, "If the server stores runs, the run file stays in its folder."),
+        h("div", {class: "row"},
+          h("button", {type: "button", class: "button button-danger", onclick: () => void this.#do_delete()},
+            "Delete the world"),
+          h("button", {type: "button", class: "button", onclick: () => this.#close(this.#confirm, this.#delete)},
+            "Cancel")));
+    this.#fork_form =
+      h("form", {
+        class: "confirm",
+        hidden: true,
+        onsubmit: (event: Event) => {
+          event.preventDefault();
+          void this.#do_fork();
+        }
+      },
+        this.#fork_from,
+        h("div", {class: "row"}, this.#fork_name, h("button", {type: "submit", class: "button button-primary"}, "Fork"),
+          h("button", {type: "button", class: "button", onclick: () => this.#close(this.#fork_form, this.#fork)},
+            "Cancel")),
+        this.#fork_error);
+    this.#islands_table =
+      h("table", {class: "table"},
+        h("thead", {},
+          h("tr", {},
+            ...["Island", "Alive", "Mean health", "Last best fitness"].map(
+              (text, i) => h("th", {scope: "col", class: i ? "number" : null}, text)))),
+        this.#islands);
+    this.element =
+      h("div", {class: "panel panel-worlds"},
+        h("table", {class: "table"},
+          h("thead", {},
+            h("tr", {},
+              ...["World", "State", "Generation", "Tick", "Speed"].map(
+                (text, i) => h("th", {scope: "col", class: i > 1 ? "number" : null}, text)))),
+          this.#worlds),
+        h("div", {class: "row"}, this.#create, this.#fork, this.#delete), this.#why, this.#confirm, this.#fork_form,
+        this.#islands_title, this.#islands_table);
   }
 
   refresh(): void {
-    const { server } = this.context, world = this.context.world();
-    const damaged = server.damaged.map(({ name }) => (
-      { name, chosen: name === world.name, act: () => this.context.world().show(name), cells: ["damaged", "", "", ""] }));
-    rows(this.#worlds, [...server.worlds.filter((one) => !one.replay || one.name === world.name).map((info) => {
-      const live = info.name === world.shown && world.snapshot;
-      return {
-        name: info.name, chosen: info.name === world.name, act: () => this.context.world().show(info.name),
-        cells: [state_word(live ? world.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
-                with_separators(live ? live.generation : info.generation ?? 0), with_separators(live ? live.tick : info.tick ?? 0),
-                speed_text(info.speed) + (info.slowed ? " (slower)" : "")],
-      };
-    }), ...damaged]);
+    const {server} = this.#context, world = this.#context.world();
+    const damaged = server.damaged.map(({name}) => ({
+                                         name,
+                                         chosen: name === world.name,
+                                         act: () => this.#context.world().show(name),
+                                         cells: ["damaged", "", "", ""]
+                                       }));
+    rows(this.#worlds, [
+      ...server.worlds.filter((one) => !one.replay || one.name === world.name).map((info) => {
+        const live = info.name === world.shown && world.snapshot;
+        return {
+          name: info.name,
+          chosen: info.name === world.name,
+          act: () => this.#context.world().show(info.name),
+          cells: [
+            state_word(live ? world.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
+            with_separators(live ? live.generation : info.generation ?? 0),
+            with_separators(live ? live.tick : info.tick ?? 0),
+            speed_text(info.speed) + (info.slowed ? " (slower)" : "")
+          ],
+        };
+      }),
+      ...damaged
+    ]);
     const why_create = server.why_not("create_world");
     set_allowed(this.#create, why_create, "Creates a world, beside those that exist.");
-    set_allowed(this.#fork, world.info ? server.why_not("fork_world") : "No world is open.", "Creates a world that starts from the tick shown.");
-    set_allowed(this.#delete, !world.info && !server.damage_of(world.name) ? "No world is open." : world.is_replay ? "This world is a replay; return to the live world first." : server.why_not("delete_world"));
+    set_allowed(
+      this.#fork, world.info ? server.why_not("fork_world") : "No world is open.",
+      "Creates a world that starts from the tick shown.");
+    set_allowed(
+      this.#delete,
+      !world.info && !server.damage_of(world.name) ? "No world is open." :
+        world.is_replay                            ? "This world is a replay; return to the live world first." :
+                                                     server.why_not("delete_world"));
     set_text(this.#why, why_create);
     if (why_create) {
       this.#confirm.hidden = this.#fork_form.hidden = true;
@@ -79,21 +128,27 @@ export class WorldsPanel implements Panel {
     const statistics = this.#statistics, count: number = statistics?.world?.island_count ?? 0;
     this.#islands_title.hidden = this.#islands_table.hidden = count === 0 || statistics?.world?.name !== world.shown;
     if (statistics && !this.#islands_table.hidden) {
-      set_text(this.#islands_title, world.is_replay ? `Islands of the replay of ${world.name}` : `Islands of ${world.name}`);
-      const of = (all: Message[] | undefined, island: number): Message | undefined => all?.find((one) => (one.island ?? 0) === island);
-      rows(this.#islands, Array.from({ length: count }, (_, i) => {
+      set_text(
+        this.#islands_title, world.is_replay ? `Islands of the replay of ${world.name}` : `Islands of ${world.name}`);
+      const of = (all: Message[]|undefined, island: number): Message|undefined =>
+        all?.find((one) => (one.island ?? 0) === island);
+      rows(this.#islands, Array.from({length: count}, (_, i) => {
         const live = of(statistics.live, i), last = of(statistics.last, i);
         return {
-          name: `island ${i}`, chosen: i === world.island, act: () => this.context.world().choose_island(i),
-          cells: [live ? `${with_separators(live.alive_count ?? 0)} of ${with_separators(live.organism_count ?? 0)}` : "", live ? tenths(live.health_mean ?? 0) : "",
-                  last ? tenths(last.fitness_best ?? 0) : ""],
+          name: `island ${i}`,
+          chosen: i === world.island,
+          act: () => this.#context.world().choose_island(i),
+          cells: [
+            live ? `${with_separators(live.alive_count ?? 0)} of ${with_separators(live.organism_count ?? 0)}` : "",
+            live ? tenths(live.health_mean ?? 0) : "", last ? tenths(last.fitness_best ?? 0) : ""
+          ],
         };
       }));
     }
     this.#poll();
   }
 
-  show(subject: { [key: string]: unknown }): void {
+  show(subject: {[key: string]: unknown}): void {
     if (subject.create) {
       this.#open_dialog();
     } else if (subject.fork) {
@@ -103,29 +158,31 @@ export class WorldsPanel implements Panel {
 
   /** Asks for statistics while the panel is shown: events do not report the progress of a generation. */
   #poll(): void {
-    const world = this.context.world();
-    if (this.#pending || !world.shown || world.server.state.phase !== "open" || performance.now() < this.#polled + poll_ms && this.#statistics?.world?.name === world.shown) {
+    const world = this.#context.world();
+    if (
+      this.#pending || !world.shown || world.server.state.phase !== "open" ||
+      performance.now() < this.#polled + poll_ms && this.#statistics?.world?.name === world.shown) {
       return;
     }
     this.#pending = true;
     this.#polled = performance.now();
-    const statistics = world.server.request("get_statistics", { world: world.shown }).then((answer) => (this.#statistics = answer), () => undefined);
-    Promise.all([statistics, world.server.refresh_worlds()])
-      .finally(() => {
-        this.#pending = false;
-        if (!this.element.hidden) {
-          this.refresh();
-        }
-      });
+    const statistics = world.server.request("get_statistics", {world: world.shown})
+                         .then((answer) => (this.#statistics = answer), () => undefined);
+    Promise.all([statistics, world.server.refresh_worlds()]).finally(() => {
+      this.#pending = false;
+      if (!this.element.hidden) {
+        this.refresh();
+      }
+    });
   }
 
   #open_dialog(): void {
-    this.#dialog ??= new NewWorldDialog(this.context);
+    this.#dialog ??= new NewWorldDialog(this.#context);
     this.#dialog.open();
   }
 
   #ask_delete(): void {
-    this.#deleted = this.context.world().name;
+    this.#deleted = this.#context.world().name;
     set_text(this.#question, `Delete the world ${this.#deleted}? It ends for all clients.`);
     this.#fork_form.hidden = true;
     this.#confirm.hidden = false;
@@ -134,18 +191,21 @@ export class WorldsPanel implements Panel {
 
   async #do_delete(): Promise<void> {
     this.#close(this.#confirm, this.#delete);
-    await this.context.attempt(() => this.context.server.request("delete_world", { world: this.#deleted }));
+    await this.#context.attempt(() => this.#context.server.request("delete_world", {world: this.#deleted}));
   }
 
   #ask_fork(): void {
-    const world = this.context.world(), why = this.context.server.why_not("fork_world");
+    const world = this.#context.world(), why = this.#context.server.why_not("fork_world");
     if (why || !world.snapshot) {
-      this.context.notify(why || "No world is open.");
+      this.#context.notify(why || "No world is open.");
       return;
     }
-    set_text(this.#fork_from, `A copy of ${world.shown} at generation ${with_separators(world.snapshot.generation)}, tick ${with_separators(world.tick)}. It waits until it is run.`);
+    set_text(
+      this.#fork_from,
+      `A copy of ${world.shown} at generation ${with_separators(world.snapshot.generation)}, tick ${
+        with_separators(world.tick)}. It waits until it is run.`);
     set_text(this.#fork_error, "");
-    this.#fork_name.value = unused_name(world.name, this.context.server.world_names);
+    this.#fork_name.value = unused_name(world.name, this.#context.server.world_names);
     this.#confirm.hidden = true;
     this.#fork_form.hidden = false;
     this.#fork_name.select();
@@ -159,7 +219,7 @@ export class WorldsPanel implements Panel {
       return;
     }
     try {
-      await this.context.fork(name);
+      await this.#context.fork(name);
       this.#close(this.#fork_form, this.#fork);
     } catch (error) {
       set_text(this.#fork_error, (error as Error).message);
@@ -173,14 +233,16 @@ export class WorldsPanel implements Panel {
 }
 
 /** Updates rows of a table whose first cell is a button that chooses the row. */
-function rows(body: HTMLElement, wanted: { name: string; chosen: boolean; act: () => void; cells: string[] }[]): void {
+function rows(body: HTMLElement, wanted: {name: string; chosen: boolean; act: () => void; cells: string[]}[]): void {
   while (body.children.length > wanted.length) {
     body.lastElementChild!.remove();
   }
-  wanted.forEach(({ name, chosen, cells, act }, i) => {
+  wanted.forEach(({name, chosen, cells, act}, i) => {
     let row = body.children[i] as HTMLElement | undefined;
     if (!row) {
-      row = h("tr", {}, h("th", { scope: "row" }, h("button", { type: "button", class: "link" })), ...cells.map((_, column) => h("td", { class: column > 0 || cells.length < 4 ? "number" : null })));
+      row =
+        h("tr", {}, h("th", {scope: "row"}, h("button", {type: "button", class: "link"})),
+          ...cells.map((_, column) => h("td", {class: column > 0 || cells.length < 4 ? "number" : null})));
       body.append(row);
     }
     const button = row.querySelector("button")!;

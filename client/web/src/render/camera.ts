@@ -1,6 +1,6 @@
 // Camera: which part of the island a pane shows. World coordinates are in px, the model's unit of length; screen coordinates in
 // CSS pixels from the upper left corner of the canvas. Both have +x to the right and +y down. All functions are pure.
-import type { Camera } from "../messages";
+import type {Camera} from "../core/messages";
 
 export interface Size {
   width: number;
@@ -30,7 +30,8 @@ function clamp(value: number, low: number, high: number): number {
 /** The largest zoom at which the whole island and its walls are visible. */
 export function zoom_to_fit(canvas: Size, island: Size): number {
   const around = 2 * (wall_pixels + margin_pixels);
-  const zoom = Math.min((canvas.width - around) / Math.max(island.width, 1), (canvas.height - around) / Math.max(island.height, 1));
+  const zoom = Math.min(
+    (canvas.width - around) / Math.max(island.width, 1), (canvas.height - around) / Math.max(island.height, 1));
   return clamp(zoom, 1e-6, zoom_max);
 }
 
@@ -40,7 +41,7 @@ export function zoom_min(canvas: Size, island: Size): number {
 
 /** The camera that shows the whole island. */
 export function fitted(canvas: Size, island: Size): Camera {
-  return { x_px: island.width / 2, y_px: island.height / 2, zoom: zoom_to_fit(canvas, island) };
+  return {x_px: island.width / 2, y_px: island.height / 2, zoom: zoom_to_fit(canvas, island)};
 }
 
 /** Keeps the middle of the canvas on the island, and the zoom in its range. */
@@ -53,16 +54,23 @@ export function clamped(camera: Camera, canvas: Size, island: Size): Camera {
 }
 
 export function to_screen(camera: Camera, canvas: Size, world: Point): Point {
-  return { x: canvas.width / 2 + (world.x - camera.x_px) * camera.zoom, y: canvas.height / 2 + (world.y - camera.y_px) * camera.zoom };
+  return {
+    x: canvas.width / 2 + (world.x - camera.x_px) * camera.zoom,
+    y: canvas.height / 2 + (world.y - camera.y_px) * camera.zoom
+  };
 }
 
 export function to_world(camera: Camera, canvas: Size, screen: Point): Point {
-  return { x: camera.x_px + (screen.x - canvas.width / 2) / camera.zoom, y: camera.y_px + (screen.y - canvas.height / 2) / camera.zoom };
+  return {
+    x: camera.x_px + (screen.x - canvas.width / 2) / camera.zoom,
+    y: camera.y_px + (screen.y - canvas.height / 2) / camera.zoom
+  };
 }
 
 /** Moves the drawn island by this many pixels. */
 export function panned(camera: Camera, canvas: Size, island: Size, by: Point): Camera {
-  return clamped({ ...camera, x_px: camera.x_px - by.x / camera.zoom, y_px: camera.y_px - by.y / camera.zoom }, canvas, island);
+  return clamped(
+    {...camera, x_px: camera.x_px - by.x / camera.zoom, y_px: camera.y_px - by.y / camera.zoom}, canvas, island);
 }
 
 /** Multiplies the zoom. The world point under `screen` does not move, unless the middle would leave the island. */
@@ -70,23 +78,24 @@ export function zoomed(camera: Camera, canvas: Size, island: Size, screen: Point
   const zoom = clamp(camera.zoom * factor, zoom_min(canvas, island), zoom_max);
   const held = to_world(camera, canvas, screen);
   return clamped(
-    { x_px: held.x - (screen.x - canvas.width / 2) / zoom, y_px: held.y - (screen.y - canvas.height / 2) / zoom, zoom }, canvas, island);
+    {x_px: held.x - (screen.x - canvas.width / 2) / zoom, y_px: held.y - (screen.y - canvas.height / 2) / zoom, zoom},
+    canvas, island);
 }
 
 /** The visible part of the world. */
 export function visible_part(camera: Camera, canvas: Size): Rectangle {
-  const corner = to_world(camera, canvas, { x: 0, y: 0 });
-  return { left: corner.x, top: corner.y, width: canvas.width / camera.zoom, height: canvas.height / camera.zoom };
+  const corner = to_world(camera, canvas, {x: 0, y: 0});
+  return {left: corner.x, top: corner.y, width: canvas.width / camera.zoom, height: canvas.height / camera.zoom};
 }
 
 export function contains(rectangle: Rectangle, point: Point): boolean {
-  return point.x >= rectangle.left && point.x <= rectangle.left + rectangle.width &&
-    point.y >= rectangle.top && point.y <= rectangle.top + rectangle.height;
+  return point.x >= rectangle.left && point.x <= rectangle.left + rectangle.width && point.y >= rectangle.top &&
+    point.y <= rectangle.top + rectangle.height;
 }
 
 export function is_whole_island_visible(camera: Camera, canvas: Size, island: Size): boolean {
   const visible = visible_part(camera, canvas);
-  return contains(visible, { x: 0, y: 0 }) && contains(visible, { x: island.width, y: island.height });
+  return contains(visible, {x: 0, y: 0}) && contains(visible, {x: island.width, y: island.height});
 }
 
 // ---- minimap ---------------------------------------------------------------------------------------------------
@@ -103,18 +112,18 @@ export function minimap_place(canvas: Size, island: Size): MinimapPlace {
   const zoom = side / Math.max(island.width, island.height, 1);
   const width = island.width * zoom;
   const height = island.height * zoom;
-  return { screen: { left: canvas.width - width - margin, top: canvas.height - height - margin, width, height }, zoom };
+  return {screen: {left: canvas.width - width - margin, top: canvas.height - height - margin, width, height}, zoom};
 }
 
 /** The rectangle on the minimap that marks the visible part of the world, clipped at the walls, at least 6 pixels wide and high. */
 export function minimap_frame(place: MinimapPlace, camera: Camera, canvas: Size): Rectangle {
   const visible = visible_part(camera, canvas);
-  const { screen, zoom } = place;
+  const {screen, zoom} = place;
   const left = clamp(screen.left + visible.left * zoom, screen.left, screen.left + screen.width);
   const right = clamp(screen.left + (visible.left + visible.width) * zoom, screen.left, screen.left + screen.width);
   const top = clamp(screen.top + visible.top * zoom, screen.top, screen.top + screen.height);
   const bottom = clamp(screen.top + (visible.top + visible.height) * zoom, screen.top, screen.top + screen.height);
   const width = Math.max(right - left, 6);
   const height = Math.max(bottom - top, 6);
-  return { left: (left + right - width) / 2, top: (top + bottom - height) / 2, width, height };
+  return {left: (left + right - width) / 2, top: (top + bottom - height) / 2, width, height};
 }

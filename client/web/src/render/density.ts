@@ -1,10 +1,10 @@
 // Density: the number of organisms in the cells of a grid, for islands with too many organisms to see. As in evoview
 // (client/viewer/island/marks.cpp).
-import { steps_per_px } from "../core/snapshot";
-import type { Rectangle, Size } from "./camera";
-import type { Interpolator, KeptSnapshot, Points, TileDensity } from "./interpolator";
-import { nice_step, ScaleTable } from "./look";
-import { with_room } from "./interpolator";
+import {steps_per_px} from "../core/snapshot";
+import type {Rectangle, Size} from "./camera";
+import type {Interpolator, KeptSnapshot, Points, TileDensity} from "./interpolator";
+import {nice_step, ScaleTable} from "./look";
+import {with_room} from "./interpolator";
 
 /** Side of a cell on the screen, at least. */
 export const density_cell_pixels = 5;
@@ -60,11 +60,17 @@ export function density_cell_px(zoom: number): number {
 function intersection(a: Rectangle, b: Size): Rectangle {
   const left = Math.max(a.left, 0);
   const top = Math.max(a.top, 0);
-  return { left, top, width: Math.max(Math.min(a.left + a.width, b.width) - left, 0), height: Math.max(Math.min(a.top + a.height, b.height) - top, 0) };
+  return {
+    left,
+    top,
+    width: Math.max(Math.min(a.left + a.width, b.width) - left, 0),
+    height: Math.max(Math.min(a.top + a.height, b.height) - top, 0)
+  };
 }
 
 /** Counts the visible organisms where they are drawn. */
-export function count_organisms(grid: DensityGrid, at: Interpolator, blend: number, visible: Rectangle, island: Size, zoom: number): void {
+export function count_organisms(
+  grid: DensityGrid, at: Interpolator, blend: number, visible: Rectangle, island: Size, zoom: number): void {
   grid.begin(intersection(visible, island), density_cell_px(zoom));
   for (let i = 0, count = at.latest.count; i < count; ++i) {
     grid.add(at.x_at(i, blend) / steps_per_px, at.y_at(i, blend) / steps_per_px, 1);
@@ -82,7 +88,7 @@ export function join_tiles(grid: DensityGrid, tiles: readonly TileDensity[], til
     bottom = Math.max(bottom, tile.top_px + tile.height_px);
     cells_max = Math.max(cells_max, tile.cells);
   }
-  grid.begin({ left, top, width: right - left, height: bottom - top }, tile_px / cells_max);
+  grid.begin({left, top, width: right - left, height: bottom - top}, tile_px / cells_max);
   for (const tile of tiles) {
     add_tile(grid, tile, tile_px);
   }
@@ -92,14 +98,18 @@ function add_tile(grid: DensityGrid, tile: TileDensity, tile_px: number): void {
   const cell_px = tile_px / tile.cells;
   for (let i = 0; i < tile.organisms.length; ++i) {
     if (tile.organisms[i]! > 0) {
-      grid.add(tile.left_px + ((i % tile.cells) + 0.5) * cell_px, tile.top_px + (Math.floor(i / tile.cells) + 0.5) * cell_px, tile.organisms[i]!);
+      grid.add(
+        tile.left_px + ((i % tile.cells) + 0.5) * cell_px, tile.top_px + (Math.floor(i / tile.cells) + 0.5) * cell_px,
+        tile.organisms[i]!);
     }
   }
 }
 
 /** Counts the organisms of the whole island at any level of detail, for the minimap. */
 export function count_overview(grid: DensityGrid, snapshot: KeptSnapshot, island: Size, tile_px: number): void {
-  grid.begin({ left: 0, top: 0, width: island.width, height: island.height }, Math.max(island.width, island.height) / overview_cells_max);
+  grid.begin(
+    {left: 0, top: 0, width: island.width, height: island.height},
+    Math.max(island.width, island.height) / overview_cells_max);
   for (let i = 0; i < snapshot.count; ++i) {
     grid.add(snapshot.x[i]! / steps_per_px, snapshot.y[i]! / steps_per_px, 1);
   }
@@ -110,6 +120,6 @@ export function count_overview(grid: DensityGrid, snapshot: KeptSnapshot, island
 }
 
 /** The colour scale of densities: from 0 to the greatest count, rounded up. */
-export function density_scale(palette: "violet" | "viridis" | "cividis", grid: DensityGrid): ScaleTable {
+export function density_scale(palette: "violet"|"viridis"|"cividis", grid: DensityGrid): ScaleTable {
   return new ScaleTable(palette, 0, nice_step(grid.most()));
 }

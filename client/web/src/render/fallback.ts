@@ -1,12 +1,14 @@
 // Fallback: draws a scene with Canvas2D, for browsers without WebGL2. Organisms are discs with an arc of health while there are few;
 // otherwise densities are drawn. Food and poison are squares, of which at most a share is drawn.
-import { steps_per_px } from "../core/snapshot";
-import { visible_part, wall_pixels } from "./camera";
-import { label_height } from "./glyphs";
-import type { KeptBoxes, Points } from "./interpolator";
-import { css, with_alpha } from "./look";
-import { is_kept, may_touch } from "./marks";
-import { arrow_px_per_force, chosen_rows, colour_of_choice, inside_walls, Painter, Scene } from "./scene";
+import {steps_per_px} from "../core/snapshot";
+
+import {visible_part, wall_pixels} from "./camera";
+import {label_height} from "./glyphs";
+
+import type {KeptBoxes, Points} from "./interpolator";
+import {css, with_alpha} from "./look";
+import {is_kept, may_touch} from "./marks";
+import {arrow_px_per_force, chosen_rows, colour_of_choice, inside_walls, Painter, Scene} from "./scene";
 
 const items_max = 3_000;
 
@@ -15,16 +17,20 @@ export class Fallback implements Painter {
   readonly organisms_max = 3_000;
   readonly label_height = label_height;
 
-  constructor(private readonly context: OffscreenCanvasRenderingContext2D) {}
+  readonly #context: OffscreenCanvasRenderingContext2D;
+
+  constructor(context: OffscreenCanvasRenderingContext2D) {
+    this.#context = context;
+  }
 
   measure(text: string): number {
-    this.context.font = '13px system-ui, "DejaVu Sans", sans-serif';
-    return this.context.measureText(text).width;
+    this.#context.font = '13px system-ui, "DejaVu Sans", sans-serif';
+    return this.#context.measureText(text).width;
   }
 
   draw(scene: Scene): void {
-    const { context } = this;
-    const { canvas, ratio, colours, at } = scene;
+    const context = this.#context;
+    const {canvas, ratio, colours, at} = scene;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.fillStyle = css(colours.outside);
     context.fillRect(0, 0, canvas.width, canvas.height);
@@ -32,56 +38,63 @@ export class Fallback implements Painter {
     if (info === null) {
       return;
     }
-    const inside = inside_walls(scene, { width: info.width_px, height: info.height_px });
+    const inside = inside_walls(scene, {width: info.width_px, height: info.height_px});
     context.fillStyle = css(colours.wall);
-    context.fillRect(inside.left - wall_pixels, inside.top - wall_pixels, inside.width + 2 * wall_pixels, inside.height + 2 * wall_pixels);
+    context.fillRect(
+      inside.left - wall_pixels, inside.top - wall_pixels, inside.width + 2 * wall_pixels,
+      inside.height + 2 * wall_pixels);
     context.fillStyle = css(colours.ground);
     context.fillRect(inside.left, inside.top, inside.width, inside.height);
     const x_of = (steps: number) => inside.left + (steps / steps_per_px) * scene.camera.zoom;
     const y_of = (steps: number) => inside.top + (steps / steps_per_px) * scene.camera.zoom;
-    this.draw_boxes(at.latest.obstacles, css(colours.obstacle), scene, x_of, y_of);
-    this.draw_boxes(at.latest.crates, css(colours.crate), scene, x_of, y_of);
+    this.#draw_boxes(at.latest.obstacles, css(colours.obstacle), scene, x_of, y_of);
+    this.#draw_boxes(at.latest.crates, css(colours.crate), scene, x_of, y_of);
     if (scene.shows === "density") {
-      this.draw_density(scene, inside.left, inside.top);
+      this.#draw_density(scene, inside.left, inside.top);
     } else {
-      this.draw_points(at.latest.poison, css(colours.poison), info.item_radius_px, scene, x_of, y_of);
-      this.draw_points(at.latest.food, css(colours.food), info.item_radius_px, scene, x_of, y_of);
-      this.draw_points(at.latest.organism_dots, css(colours.body), 2 / scene.camera.zoom, scene, x_of, y_of);
-      this.draw_organisms(scene, x_of, y_of);
+      this.#draw_points(at.latest.poison, css(colours.poison), info.item_radius_px, scene, x_of, y_of);
+      this.#draw_points(at.latest.food, css(colours.food), info.item_radius_px, scene, x_of, y_of);
+      this.#draw_points(at.latest.organism_dots, css(colours.body), 2 / scene.camera.zoom, scene, x_of, y_of);
+      this.#draw_organisms(scene, x_of, y_of);
     }
-    this.draw_labels(scene);
-    this.draw_minimap(scene);
+    this.#draw_labels(scene);
+    this.#draw_minimap(scene);
   }
 
-  private draw_boxes(boxes: KeptBoxes, fill: string, { camera }: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
-    this.context.fillStyle = fill;
+  #draw_boxes(
+    boxes: KeptBoxes, fill: string, {camera}: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
+    this.#context.fillStyle = fill;
     for (let i = 0; i < boxes.count; ++i) {
       const half_width = Math.max((boxes.half_width[i]! / steps_per_px) * camera.zoom, 1);
       const half_height = Math.max((boxes.half_height[i]! / steps_per_px) * camera.zoom, 1);
-      this.context.fillRect(x_of(boxes.x[i]!) - half_width, y_of(boxes.y[i]!) - half_height, 2 * half_width, 2 * half_height);
+      this.#context.fillRect(
+        x_of(boxes.x[i]!) - half_width, y_of(boxes.y[i]!) - half_height, 2 * half_width, 2 * half_height);
     }
   }
 
-  private draw_points(points: Points, fill: string, radius_px: number, { camera, canvas }: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
+  #draw_points(
+    points: Points, fill: string, radius_px: number, {camera, canvas}: Scene, x_of: (x: number) => number,
+    y_of: (y: number) => number): void {
     const half = Math.max(radius_px * camera.zoom, 1);
     const share = items_max / Math.max(points.count, 1);
-    this.context.fillStyle = fill;
+    this.#context.fillStyle = fill;
     for (let i = 0; i < points.count; ++i) {
       const x = x_of(points.x[i]!);
       const y = y_of(points.y[i]!);
       const is_visible = x >= -half && y >= -half && x <= canvas.width + half && y <= canvas.height + half;
       if (is_visible && is_kept(points.x[i]! / steps_per_px, points.y[i]! / steps_per_px, share)) {
-        this.context.fillRect(x - half, y - half, 2 * half, 2 * half);
+        this.#context.fillRect(x - half, y - half, 2 * half, 2 * half);
       }
     }
   }
 
-  private draw_organisms(scene: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
-    const { context } = this;
-    const { at, blend, camera, colours, canvas, organism_colours } = scene;
-    const { latest } = at;
+  #draw_organisms(scene: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
+    const context = this.#context;
+    const {at, blend, camera, colours, canvas, organism_colours} = scene;
+    const {latest} = at;
     const visible = visible_part(camera, canvas);
-    const bytes = organism_colours === null ? null : new Uint8Array(organism_colours.buffer, organism_colours.byteOffset);
+    const bytes =
+      organism_colours === null ? null : new Uint8Array(organism_colours.buffer, organism_colours.byteOffset);
     for (let i = 0; i < latest.count; ++i) {
       const radius_px = latest.radius[i]! / steps_per_px;
       if (!may_touch(visible, at.x_at(i, blend) / steps_per_px, at.y_at(i, blend) / steps_per_px, radius_px)) {
@@ -91,7 +104,8 @@ export class Fallback implements Painter {
       const y = y_of(at.y_at(i, blend));
       const radius = Math.max(radius_px * camera.zoom, 1.5);
       const share = Math.min(latest.health[i]! / steps_per_px / scene.health_max, 1);
-      context.fillStyle = bytes !== null ? `rgb(${bytes[4 * i]}, ${bytes[4 * i + 1]}, ${bytes[4 * i + 2]})` : css(colours.body);
+      context.fillStyle =
+        bytes !== null ? `rgb(${bytes[4 * i]}, ${bytes[4 * i + 1]}, ${bytes[4 * i + 2]})` : css(colours.body);
       context.beginPath();
       context.arc(x, y, radius, 0, 2 * Math.PI);
       context.fill();
@@ -103,13 +117,13 @@ export class Fallback implements Painter {
         context.stroke();
       }
     }
-    this.draw_chosen(scene, x_of, y_of);
+    this.#draw_chosen(scene, x_of, y_of);
   }
 
   /** Draws rings of perception, forces and the rings around the selected organism and the one at the mouse. */
-  private draw_chosen(scene: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
-    const { context } = this;
-    const { at, blend, camera, colours, population, look, styles } = scene;
+  #draw_chosen(scene: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
+    const context = this.#context;
+    const {at, blend, camera, colours, population, look, styles} = scene;
     const ring = (row: number, radius: number, colour: string, width: number) => {
       context.strokeStyle = colour;
       context.lineWidth = width;
@@ -118,7 +132,8 @@ export class Fallback implements Painter {
       context.stroke();
     };
     for (const row of population === null ? [] : chosen_rows(look.perception, scene)) {
-      for (const [gene, colour] of [["food_radius", colours.food_radius], ["poison_radius", colours.poison_radius]] as const) {
+      for (const [gene, colour] of [["food_radius", colours.food_radius], ["poison_radius", colours.poison_radius]] as
+           const) {
         const radius = population!.genes[population!.gene_names.indexOf(gene)]?.[at.latest.id[row]!];
         if (radius !== undefined) {
           ring(row, radius * camera.zoom, css(colour), 1);
@@ -145,9 +160,9 @@ export class Fallback implements Painter {
     }
   }
 
-  private draw_density({ density, density_scale, camera, at }: Scene, left: number, top: number): void {
-    const { context } = this;
-    const { width_px, height_px } = at.latest.info!;
+  #draw_density({density, density_scale, camera, at}: Scene, left: number, top: number): void {
+    const context = this.#context;
+    const {width_px, height_px} = at.latest.info!;
     for (let i = 0; i < density.columns * density.rows; ++i) {
       const count = density.counts[i]!;
       if (count > 0) {
@@ -155,33 +170,34 @@ export class Fallback implements Painter {
         const x_px = density.left_px + (i % density.columns) * density.cell_px;
         const y_px = density.top_px + Math.floor(i / density.columns) * density.cell_px;
         context.fillStyle = `rgb(${colour & 255}, ${(colour >> 8) & 255}, ${(colour >> 16) & 255})`;
-        context.fillRect(left + x_px * camera.zoom, top + y_px * camera.zoom, Math.min(density.cell_px, width_px - x_px) * camera.zoom,
-                         Math.min(density.cell_px, height_px - y_px) * camera.zoom);
+        context.fillRect(
+          left + x_px * camera.zoom, top + y_px * camera.zoom, Math.min(density.cell_px, width_px - x_px) * camera.zoom,
+          Math.min(density.cell_px, height_px - y_px) * camera.zoom);
       }
     }
   }
 
-  private draw_labels({ labels, colours }: Scene): void {
-    const { context } = this;
+  #draw_labels({labels, colours}: Scene): void {
+    const context = this.#context;
     this.measure(""); // sets the font
     context.textBaseline = "top";
     context.lineJoin = "round";
     context.lineWidth = 3;
     context.strokeStyle = css(with_alpha(colours.ground, 210));
     context.fillStyle = css(colours.label);
-    for (const { text, left, top } of labels) {
+    for (const {text, left, top} of labels) {
       context.strokeText(text, Math.round(left), Math.round(top));
       context.fillText(text, Math.round(left), Math.round(top));
     }
   }
 
-  private draw_minimap({ minimap, colours }: Scene): void {
+  #draw_minimap({minimap, colours}: Scene): void {
     if (minimap === null) {
       return;
     }
-    const { context } = this;
-    const { left, top, width, height } = minimap.place.screen;
-    const { grid } = minimap;
+    const context = this.#context;
+    const {left, top, width, height} = minimap.place.screen;
+    const {grid} = minimap;
     const cell = grid.cell_px * minimap.place.zoom;
     context.fillStyle = css(colours.wall);
     context.fillRect(left - 1, top - 1, width + 2, height + 2);

@@ -12,20 +12,20 @@ export class Glyphs {
   readonly cell_height: number;
   readonly columns = characters.length;
   readonly padding: number; // left of a glyph in its cell, and above it
-  private readonly advances: number[]; // whole device pixels
+  readonly #advances: number[]; // whole device pixels
 
   constructor(readonly ratio: number) {
     const pixels = font_pixels * ratio;
     const measuring = new OffscreenCanvas(1, 1).getContext("2d")!;
     measuring.font = font(pixels);
-    this.advances = [...characters].map((character) => Math.round(measuring.measureText(character).width));
+    this.#advances = [...characters].map((character) => Math.round(measuring.measureText(character).width));
     const halo = 1.5 * ratio;
     this.padding = Math.ceil(halo) + 1;
-    this.cell_width = Math.max(...this.advances) + 2 * this.padding;
+    this.cell_width = Math.max(...this.#advances) + 2 * this.padding;
     this.cell_height = Math.ceil(label_height * ratio) + 2 * this.padding;
     const width = this.cell_width * this.columns;
     const canvas = new OffscreenCanvas(width, this.cell_height);
-    const context = canvas.getContext("2d", { willReadFrequently: true })!;
+    const context = canvas.getContext("2d", {willReadFrequently: true})!;
     context.font = font(pixels);
     context.textBaseline = "alphabetic";
     context.lineJoin = "round";
@@ -56,14 +56,14 @@ export class Glyphs {
   }
 
   advance(index: number): number {
-    return this.advances[index]!;
+    return this.#advances[index]!;
   }
 
   /** The width of a text in CSS pixels. */
   measure(text: string): number {
     let width = 0;
     for (const character of text) {
-      width += this.advances[this.index_of(character)] ?? 0;
+      width += this.#advances[this.index_of(character)] ?? 0;
     }
     return width / this.ratio;
   }

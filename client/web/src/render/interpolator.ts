@@ -3,8 +3,8 @@
 //
 // The drawn state is one snapshot behind: organisms move from their position in the previous snapshot to their position in the
 // latest one. Positions are never extrapolated. The two kept snapshots are copies, whose memory is used again.
-import type { Boxes, CoarseTile, Dots, Items, Snapshot, SnapshotInfo } from "../core/snapshot";
-import { steps_per_px } from "../core/snapshot";
+import type {Boxes, CoarseTile, Dots, Items, Snapshot, SnapshotInfo} from "../core/snapshot";
+import {steps_per_px} from "../core/snapshot";
 
 /** Two snapshots are interpolated only if they are at most this far apart in simulated time: over longer times the real paths are
  *  not straight lines. At 30 snapshots per second, 2 s between snapshots is a speed of 60 times real time. */
@@ -12,7 +12,7 @@ export const blended_s_max = 2;
 /** The interpolation takes as long as the interval between the arrivals of the two snapshots, but at most this long. */
 export const glide_ms_max = 250;
 
-type Column = Int32Array | Uint32Array | Uint8Array;
+type Column = Int32Array|Uint32Array|Uint8Array;
 
 /** Returns the column, or a larger one without its contents if it is too small. */
 export function with_room<Kind extends Column>(column: Kind, count: number): Kind {
@@ -31,10 +31,11 @@ export class Points {
   x = new Int32Array(0);
   y = new Int32Array(0);
 
-  set(items: Items | null, coarse: readonly CoarseTile[], of_tile: (dots: NonNullable<CoarseTile["dots"]>) => Dots): void {
+  set(items: Items|null, coarse: readonly CoarseTile[], of_tile: (dots: NonNullable<CoarseTile["dots"]>) => Dots):
+    void {
     this.whole = items === null ? 0 : items.x.length;
     this.count = this.whole;
-    for (const { dots } of coarse) {
+    for (const {dots} of coarse) {
       this.count += dots === null ? 0 : of_tile(dots).x_px.length;
     }
     this.id = with_room(this.id, this.whole);
@@ -46,9 +47,9 @@ export class Points {
       this.y.set(items.y);
     }
     let at = this.whole;
-    for (const { dots } of coarse) {
+    for (const {dots} of coarse) {
       if (dots !== null) {
-        const { x_px, y_px } = of_tile(dots);
+        const {x_px, y_px} = of_tile(dots);
         for (let i = 0; i < x_px.length; ++i, ++at) {
           this.x[at] = Math.round(x_px[i]! * steps_per_px);
           this.y[at] = Math.round(y_px[i]! * steps_per_px);
@@ -96,7 +97,7 @@ export interface TileDensity {
 
 /** A copy of a snapshot. */
 export class KeptSnapshot {
-  info: SnapshotInfo | null = null;
+  info: SnapshotInfo|null = null;
   count = 0; // organisms in full detail
   id = new Uint32Array(0);
   x = new Int32Array(0);
@@ -115,7 +116,7 @@ export class KeptSnapshot {
   densities: TileDensity[] = []; // of the tiles that arrived as densities
 
   set(snapshot: Snapshot): void {
-    const { organisms, coarse } = snapshot;
+    const {organisms, coarse} = snapshot;
     this.info = snapshot.info;
     const count = (this.count = organisms.id.length);
     this.id = with_room(this.id, count);
@@ -137,15 +138,16 @@ export class KeptSnapshot {
     this.crate_dots.set(null, coarse, (dots) => dots.crates);
     this.obstacle_dots.set(null, coarse, (dots) => dots.obstacles);
     this.densities.length = 0;
-    for (const { density, left_px, top_px, width_px, height_px } of coarse) {
+    for (const {density, left_px, top_px, width_px, height_px} of coarse) {
       if (density !== null) {
-        this.densities.push({ left_px, top_px, width_px, height_px, cells: density.cells, organisms: density.organisms.slice() });
+        this.densities.push(
+          {left_px, top_px, width_px, height_px, cells: density.cells, organisms: density.organisms.slice()});
       }
     }
   }
 
   /** Returns the row of an organism; -1 if it is not there. */
-  index_of(id: number | null): number {
+  index_of(id: number|null): number {
     let low = 0;
     let high = this.count;
     if (id === null) {
@@ -171,12 +173,12 @@ export function continues(next: SnapshotInfo, last: SnapshotInfo): boolean {
 
 export class Interpolator {
   latest = new KeptSnapshot();
-  previous: KeptSnapshot | null = null;
+  previous: KeptSnapshot|null = null;
   /** For each organism, its row in `previous`, or -1. */
   match = new Int32Array(0);
-  private spare = new KeptSnapshot();
-  private arrived_ms = 0;
-  private glide_ms = 0;
+  #spare = new KeptSnapshot();
+  #arrived_ms = 0;
+  #glide_ms = 0;
 
   get has_snapshot(): boolean {
     return this.latest.info !== null;
@@ -186,34 +188,35 @@ export class Interpolator {
    *  A snapshot of the same tick, with another region or level of detail, replaces the latest. */
   add(snapshot: Snapshot, now_ms: number): void {
     const last = this.latest.info;
-    const is_next = last !== null && continues(snapshot.info, last) && snapshot.info.simulated_s - last.simulated_s <= blended_s_max;
+    const is_next =
+      last !== null && continues(snapshot.info, last) && snapshot.info.simulated_s - last.simulated_s <= blended_s_max;
     if (!(is_next && this.previous !== null && snapshot.info.tick === last.tick)) {
-      this.glide_ms = Math.min(now_ms - this.arrived_ms, glide_ms_max);
-      const freed = this.previous ?? this.spare;
+      this.#glide_ms = Math.min(now_ms - this.#arrived_ms, glide_ms_max);
+      const freed = this.previous ?? this.#spare;
       this.previous = is_next ? this.latest : null;
       if (!is_next) {
-        this.spare = this.latest;
+        this.#spare = this.latest;
       }
       this.latest = freed;
-      this.arrived_ms = now_ms;
+      this.#arrived_ms = now_ms;
     }
     this.latest.set(snapshot);
-    this.find_matches();
+    this.#find_matches();
   }
 
   clear(): void {
     this.previous = null;
     this.latest = new KeptSnapshot();
-    this.spare = new KeptSnapshot();
+    this.#spare = new KeptSnapshot();
   }
 
   /** Returns the progress of the interpolation: 0 draws the positions in `previous`, 1 those in `latest`. Returns 1 if the latest
    *  snapshot is not interpolated, and while the world does not run. */
   blend_at(now_ms: number): number {
-    if (this.previous === null || this.glide_ms <= 0 || this.latest.info?.state !== "RUN_STATE_RUNNING") {
+    if (this.previous === null || this.#glide_ms <= 0 || this.latest.info?.state !== "RUN_STATE_RUNNING") {
       return 1;
     }
-    return Math.min(Math.max((now_ms - this.arrived_ms) / this.glide_ms, 0), 1);
+    return Math.min(Math.max((now_ms - this.#arrived_ms) / this.#glide_ms, 0), 1);
   }
 
   /** The simulated time that is drawn. */
@@ -236,11 +239,11 @@ export class Interpolator {
     return j < 0 ? to : this.previous!.y[j]! + (to - this.previous!.y[j]!) * blend;
   }
 
-  private find_matches(): void {
+  #find_matches(): void {
     if (this.previous === null) {
       return;
     }
-    const { id, count } = this.latest;
+    const {id, count} = this.latest;
     const among = this.previous;
     this.match = with_room(this.match, count);
     for (let i = 0, j = 0; i < count; ++i) {

@@ -1,7 +1,7 @@
 // Labels: which organisms have a number, and where it is drawn, so that labels rarely overlap. As in evoview
 // (client/viewer/island/labels.cpp, island_renderer.cpp). Lengths are in CSS pixels.
-import type { Rectangle } from "./camera";
-import type { KeptSnapshot } from "./interpolator";
+import type {Rectangle} from "./camera";
+import type {KeptSnapshot} from "./interpolator";
 
 export interface Label {
   text: string;
@@ -16,7 +16,7 @@ export interface Label {
 /** Returns the rows of the `count` healthiest organisms, the healthiest first, those with equal health by id. */
 export function healthiest(snapshot: KeptSnapshot, count: number): number[] {
   const best: number[] = [];
-  const { health } = snapshot;
+  const {health} = snapshot;
   for (let i = 0; i < snapshot.count; ++i) {
     if (best.length === count && health[i]! <= health[best[count - 1]!]!) {
       continue;
@@ -34,7 +34,7 @@ export function healthiest(snapshot: KeptSnapshot, count: number): number[] {
 /** Places each label above its organism, or below it if it would overlap a wall or an earlier label there. If it overlaps one at both
  *  places, it is above. `walls`: the part of the screen inside the walls. */
 export function place_labels(labels: Label[], height: number, walls: Rectangle): void {
-  const cell = labels.reduce((most, { width }) => Math.max(most, width), height);
+  const cell = labels.reduce((most, {width}) => Math.max(most, width), height);
   const cells = new Map<number, Label[]>(); // by the cell of the upper left corner; no label is wider than a cell
   const index = (place: number) => Math.floor(place / cell);
   const key = (row: number, column: number) => row * 100_000 + column;
@@ -42,7 +42,9 @@ export function place_labels(labels: Label[], height: number, walls: Rectangle):
     for (let row = index(top) - 1; row <= index(top) + 1; ++row) {
       for (let column = index(left) - 1; column <= index(left) + 1; ++column) {
         for (const other of cells.get(key(row, column)) ?? []) {
-          if (left < other.left + other.width && other.left < left + width && top < other.top + height && other.top < top + height) {
+          if (
+            left < other.left + other.width && other.left < left + width && top < other.top + height &&
+            other.top < top + height) {
             return true;
           }
         }

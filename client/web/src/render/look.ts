@@ -1,9 +1,9 @@
 // Look: the colours and styles of the island in each skin and background, and the colour scales. The same values as in evoview
 // (client/viewer/drawing/palette.cpp, client/viewer/island/styles.cpp); a test compares them.
-import type { Look } from "../messages";
+import type {Look} from "../core/messages";
 
 /** Red, green, blue and alpha, 0 to 255. */
-export type Colour = readonly [number, number, number, number];
+export type Colour = readonly[number, number, number, number];
 
 function rgb(red: number, green: number, blue: number, alpha = 255): Colour {
   return [red, green, blue, alpha];
@@ -11,7 +11,8 @@ function rgb(red: number, green: number, blue: number, alpha = 255): Colour {
 
 export function css(colour: Colour): string {
   const [red, green, blue, alpha] = colour;
-  return alpha === 255 ? `rgb(${red}, ${green}, ${blue})` : `rgba(${red}, ${green}, ${blue}, ${(alpha / 255).toFixed(3)})`;
+  return alpha === 255 ? `rgb(${red}, ${green}, ${blue})` :
+                         `rgba(${red}, ${green}, ${blue}, ${(alpha / 255).toFixed(3)})`;
 }
 
 export function with_alpha(colour: Colour, alpha: number): Colour {
@@ -27,12 +28,24 @@ export function packed(colour: Colour): number {
 
 /** Colours for categories. Source: Okabe & Ito 2002, "Color Universal Design", without black. */
 export const kinds: readonly Colour[] = [
-  rgb(230, 159, 0), rgb(86, 180, 233), rgb(0, 158, 115), rgb(240, 228, 66), rgb(0, 114, 178), rgb(213, 94, 0), rgb(204, 121, 167),
+  rgb(230, 159, 0),
+  rgb(86, 180, 233),
+  rgb(0, 158, 115),
+  rgb(240, 228, 66),
+  rgb(0, 114, 178),
+  rgb(213, 94, 0),
+  rgb(204, 121, 167),
 ];
 
 /** Colours of lineages, distinguishable with every kind of colour vision. */
 export const lineages: readonly Colour[] = [
-  kinds[0]!, kinds[1]!, rgb(60, 132, 90), kinds[3]!, kinds[4]!, rgb(140, 70, 255), rgb(160, 84, 136),
+  kinds[0]!,
+  kinds[1]!,
+  rgb(60, 132, 90),
+  kinds[3]!,
+  kinds[4]!,
+  rgb(140, 70, 255),
+  rgb(160, 84, 136),
 ];
 
 /** For organisms without a value, or in a lineage without a colour. */
@@ -65,35 +78,83 @@ export interface IslandColours {
   flees: Colour;
 }
 
-export const island_colours: { readonly [name in "dark" | "light" | "classic"]: IslandColours } = {
+export const island_colours: {readonly[name in "dark" | "light" | "classic"]: IslandColours} = {
   dark: {
-    outside: rgb(11, 12, 22), ground: rgb(20, 22, 40), wall: rgb(74, 80, 116), label: rgb(232, 232, 244),
-    body_low: rgb(92, 66, 190), body_high: rgb(206, 192, 255), body: rgb(160, 138, 250), arc: rgb(255, 255, 255),
-    pointed_at: rgb(255, 255, 255), selected: rgb(255, 214, 90), food: rgb(150, 236, 116), poison: rgb(240, 52, 44),
-    crate: rgb(124, 92, 58), crate_edge: rgb(186, 146, 98), obstacle: rgb(84, 90, 112),
-    food_radius: rgb(150, 236, 116, 200), poison_radius: rgb(240, 72, 64, 220), trail: rgb(150, 130, 245, 120),
-    death: rgb(255, 176, 90), wanders: rgb(196, 198, 212), seeks: kinds[1]!, flees: rgb(255, 140, 50),
+    outside: rgb(11, 12, 22),
+    ground: rgb(20, 22, 40),
+    wall: rgb(74, 80, 116),
+    label: rgb(232, 232, 244),
+    body_low: rgb(92, 66, 190),
+    body_high: rgb(206, 192, 255),
+    body: rgb(160, 138, 250),
+    arc: rgb(255, 255, 255),
+    pointed_at: rgb(255, 255, 255),
+    selected: rgb(255, 214, 90),
+    food: rgb(150, 236, 116),
+    poison: rgb(240, 52, 44),
+    crate: rgb(124, 92, 58),
+    crate_edge: rgb(186, 146, 98),
+    obstacle: rgb(84, 90, 112),
+    food_radius: rgb(150, 236, 116, 200),
+    poison_radius: rgb(240, 72, 64, 220),
+    trail: rgb(150, 130, 245, 120),
+    death: rgb(255, 176, 90),
+    wanders: rgb(196, 198, 212),
+    seeks: kinds[1]!,
+    flees: rgb(255, 140, 50),
   },
   light: {
-    outside: strip, ground: rgb(250, 250, 253), wall: rgb(92, 96, 124), label: rgb(28, 26, 44),
-    body_low: rgb(186, 170, 240), body_high: rgb(84, 48, 196), body: rgb(112, 84, 222), arc: rgb(52, 22, 130),
-    pointed_at: rgb(52, 22, 130), selected: rgb(224, 130, 0), food: rgb(92, 192, 88), poison: rgb(186, 12, 28),
-    crate: rgb(204, 168, 122), crate_edge: rgb(132, 98, 56), obstacle: rgb(150, 154, 168),
-    food_radius: rgb(62, 150, 60, 220), poison_radius: rgb(186, 12, 28, 220), trail: rgb(112, 84, 222, 80),
-    death: rgb(224, 120, 20), wanders: rgb(90, 90, 96), seeks: kinds[4]!, flees: kinds[5]!,
+    outside: strip,
+    ground: rgb(250, 250, 253),
+    wall: rgb(92, 96, 124),
+    label: rgb(28, 26, 44),
+    body_low: rgb(186, 170, 240),
+    body_high: rgb(84, 48, 196),
+    body: rgb(112, 84, 222),
+    arc: rgb(52, 22, 130),
+    pointed_at: rgb(52, 22, 130),
+    selected: rgb(224, 130, 0),
+    food: rgb(92, 192, 88),
+    poison: rgb(186, 12, 28),
+    crate: rgb(204, 168, 122),
+    crate_edge: rgb(132, 98, 56),
+    obstacle: rgb(150, 154, 168),
+    food_radius: rgb(62, 150, 60, 220),
+    poison_radius: rgb(186, 12, 28, 220),
+    trail: rgb(112, 84, 222, 80),
+    death: rgb(224, 120, 20),
+    wanders: rgb(90, 90, 96),
+    seeks: kinds[4]!,
+    flees: kinds[5]!,
   },
   classic: {
-    outside: strip, ground: rgb(204, 204, 204), wall: rgb(0, 0, 0), label: rgb(20, 20, 24),
-    body_low: rgb(104, 22, 148), body_high: rgb(104, 22, 148), body: rgb(104, 22, 148), arc: rgb(104, 22, 148),
-    pointed_at: rgb(190, 60, 250), selected: rgb(255, 255, 255), food: rgb(62, 176, 76), poison: rgb(196, 22, 36),
-    crate: rgb(190, 148, 96), crate_edge: rgb(104, 74, 38), obstacle: rgb(92, 94, 100),
-    food_radius: rgb(62, 176, 76, 220), poison_radius: rgb(140, 8, 24, 220), trail: rgb(70, 30, 100),
-    death: rgb(104, 22, 148), wanders: rgb(90, 90, 96), seeks: kinds[4]!, flees: kinds[5]!,
+    outside: strip,
+    ground: rgb(204, 204, 204),
+    wall: rgb(0, 0, 0),
+    label: rgb(20, 20, 24),
+    body_low: rgb(104, 22, 148),
+    body_high: rgb(104, 22, 148),
+    body: rgb(104, 22, 148),
+    arc: rgb(104, 22, 148),
+    pointed_at: rgb(190, 60, 250),
+    selected: rgb(255, 255, 255),
+    food: rgb(62, 176, 76),
+    poison: rgb(196, 22, 36),
+    crate: rgb(190, 148, 96),
+    crate_edge: rgb(104, 74, 38),
+    obstacle: rgb(92, 94, 100),
+    food_radius: rgb(62, 176, 76, 220),
+    poison_radius: rgb(140, 8, 24, 220),
+    trail: rgb(70, 30, 100),
+    death: rgb(104, 22, 148),
+    wanders: rgb(90, 90, 96),
+    seeks: kinds[4]!,
+    flees: kinds[5]!,
   },
 };
 
 /** The name of the look's colours and styles. The classic skin is always grey. */
-function variant(look: Look): "dark" | "light" | "classic" {
+function variant(look: Look): "dark"|"light"|"classic" {
   return look.skin === "classic" ? "classic" : look.background;
 }
 
@@ -103,7 +164,7 @@ export function colours_of(look: Look): IslandColours {
 
 // ---- styles ----------------------------------------------------------------------------------------------------
 
-export type Form = "circle" | "rectangle" | "line" | "arrow" | "body" | "leaf" | "star" | "ripple" | "soft_line";
+export type Form = "circle"|"rectangle"|"line"|"arrow"|"body"|"leaf"|"star"|"ripple"|"soft_line";
 
 /** All sizes are in CSS pixels. */
 export interface ShapeStyle {
@@ -145,21 +206,31 @@ const transparent: Colour = [0, 0, 0, 0];
 const opaque_black: Colour = [0, 0, 0, 255];
 
 function style(form: Form, given: Partial<ShapeStyle>): ShapeStyle {
-  return { form, fill: opaque_black, edge: opaque_black, fill_low: opaque_black, edge_pixels: 0, half_pixels_min: 0, line_pixels: 1.5, ...given };
+  return {
+    form,
+    fill: opaque_black,
+    edge: opaque_black,
+    fill_low: opaque_black,
+    edge_pixels: 0,
+    half_pixels_min: 0,
+    line_pixels: 1.5,
+    ...given
+  };
 }
 
 function vivid(of: IslandColours, shadow: number): Styles {
-  const organism = style("body", { fill: of.body_high, edge: of.arc, fill_low: of.body_low, edge_pixels: 3, half_pixels_min: 1.5 });
+  const organism =
+    style("body", {fill: of.body_high, edge: of.arc, fill_low: of.body_low, edge_pixels: 3, half_pixels_min: 1.5});
   return {
     ...common(of),
     organism,
     coloured: organism,
-    organism_dot: style("circle", { fill: of.body, half_pixels_min: 1.1 }),
-    pointed_at: style("circle", { fill: transparent, edge: of.pointed_at, edge_pixels: 2, half_pixels_min: 5 }),
-    food: style("leaf", { fill: of.food, half_pixels_min: 0.75 }),
-    poison: style("star", { fill: of.poison, half_pixels_min: 0.75 }),
-    trail: style("soft_line", { fill: of.trail, line_pixels: 5 }),
-    shadow: style("soft_line", { fill: [0, 0, 0, shadow], line_pixels: 48 }),
+    organism_dot: style("circle", {fill: of.body, half_pixels_min: 1.1}),
+    pointed_at: style("circle", {fill: transparent, edge: of.pointed_at, edge_pixels: 2, half_pixels_min: 5}),
+    food: style("leaf", {fill: of.food, half_pixels_min: 0.75}),
+    poison: style("star", {fill: of.poison, half_pixels_min: 0.75}),
+    trail: style("soft_line", {fill: of.trail, line_pixels: 5}),
+    shadow: style("soft_line", {fill: [0, 0, 0, shadow], line_pixels: 48}),
     highlight_pixels: 8,
     heading_pixels: 10,
     label_zoom_min: 1.4,
@@ -167,17 +238,17 @@ function vivid(of: IslandColours, shadow: number): Styles {
 }
 
 function classic(of: IslandColours): Styles {
-  const organism = style("circle", { fill: transparent, edge: of.body, edge_pixels: 2, half_pixels_min: 1.5 });
+  const organism = style("circle", {fill: transparent, edge: of.body, edge_pixels: 2, half_pixels_min: 1.5});
   return {
     ...common(of),
     organism,
-    coloured: style("circle", { edge: organism_outline, edge_pixels: 1, half_pixels_min: 1.5 }),
+    coloured: style("circle", {edge: organism_outline, edge_pixels: 1, half_pixels_min: 1.5}),
     organism_dot: organism,
-    pointed_at: style("circle", { fill: [255, 255, 255, 90], edge: of.pointed_at, edge_pixels: 3, half_pixels_min: 4 }),
-    food: style("circle", { fill: of.food, half_pixels_min: 1 }),
-    poison: style("circle", { fill: of.poison, half_pixels_min: 1 }),
-    trail: style("line", { fill: of.trail, line_pixels: 1.5 }),
-    shadow: style("soft_line", { fill: transparent }),
+    pointed_at: style("circle", {fill: [255, 255, 255, 90], edge: of.pointed_at, edge_pixels: 3, half_pixels_min: 4}),
+    food: style("circle", {fill: of.food, half_pixels_min: 1}),
+    poison: style("circle", {fill: of.poison, half_pixels_min: 1}),
+    trail: style("line", {fill: of.trail, line_pixels: 1.5}),
+    shadow: style("soft_line", {fill: transparent}),
     highlight_pixels: 0,
     heading_pixels: 6,
     label_zoom_min: 0.45,
@@ -187,21 +258,25 @@ function classic(of: IslandColours): Styles {
 /** The styles that both skins share. */
 function common(of: IslandColours) {
   return {
-    selected: style("circle", { fill: transparent, edge: of.selected, edge_pixels: 3, half_pixels_min: 6 }),
-    heading: style("line", { fill: of.label, line_pixels: 2 }),
-    crate: style("rectangle", { fill: of.crate, edge: of.crate_edge, edge_pixels: 2, half_pixels_min: 1 }),
-    obstacle: style("rectangle", { fill: of.obstacle, half_pixels_min: 1 }),
-    food_radius: style("circle", { fill: transparent, edge: of.food_radius, edge_pixels: 1 }),
-    poison_radius: style("circle", { fill: transparent, edge: of.poison_radius, edge_pixels: 1 }),
-    arrow: style("arrow", { line_pixels: 2 }),
-    target: style("line", { line_pixels: 1 }),
-    food_dot: style("circle", { fill: with_alpha(of.food, 140), half_pixels_min: 0.5 }),
-    poison_dot: style("circle", { fill: with_alpha(of.poison, 140), half_pixels_min: 0.5 }),
+    selected: style("circle", {fill: transparent, edge: of.selected, edge_pixels: 3, half_pixels_min: 6}),
+    heading: style("line", {fill: of.label, line_pixels: 2}),
+    crate: style("rectangle", {fill: of.crate, edge: of.crate_edge, edge_pixels: 2, half_pixels_min: 1}),
+    obstacle: style("rectangle", {fill: of.obstacle, half_pixels_min: 1}),
+    food_radius: style("circle", {fill: transparent, edge: of.food_radius, edge_pixels: 1}),
+    poison_radius: style("circle", {fill: transparent, edge: of.poison_radius, edge_pixels: 1}),
+    arrow: style("arrow", {line_pixels: 2}),
+    target: style("line", {line_pixels: 1}),
+    food_dot: style("circle", {fill: with_alpha(of.food, 140), half_pixels_min: 0.5}),
+    poison_dot: style("circle", {fill: with_alpha(of.poison, 140), half_pixels_min: 0.5}),
     ripple: style("ripple", {}),
   };
 }
 
-const styles = { dark: vivid(island_colours.dark, 110), light: vivid(island_colours.light, 60), classic: classic(island_colours.classic) };
+const styles = {
+  dark: vivid(island_colours.dark, 110),
+  light: vivid(island_colours.light, 60),
+  classic: classic(island_colours.classic)
+};
 
 export function styles_of(look: Look): Styles {
   return styles[variant(look)];
@@ -211,8 +286,17 @@ export function styles_of(look: Look): Styles {
 export function default_look(skin: Look["skin"], background: Look["background"], interpolate = true): Look {
   const is_vivid = skin === "vivid";
   return {
-    skin, background, colour_by: "", palette: "violet", trails: is_vivid, flashes: is_vivid,
-    perception: is_vivid ? "selected" : "none", forces: "none", interpolate, density: true, minimap: true,
+    skin,
+    background,
+    colour_by: "",
+    palette: "violet",
+    trails: is_vivid,
+    flashes: is_vivid,
+    perception: is_vivid ? "selected" : "none",
+    forces: "none",
+    interpolate,
+    density: true,
+    minimap: true,
   };
 }
 
@@ -220,15 +304,47 @@ export function default_look(skin: Look["skin"], background: Look["background"],
 
 /** Colour ramps for numbers; lightness rises with the number. Source: viridis and cividis: every 15th of the 256 colours of
  *  matplotlib. Viridis: S. van der Walt and N. Smith, 2015. Cividis: Nuñez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239. */
-export const ramps: { readonly [name in Look["palette"]]: readonly (readonly [number, number, number])[] } = {
+export const ramps: {readonly[name in Look["palette"]]: readonly(readonly[number, number, number])[]} = {
   violet: [[70, 38, 150], [112, 84, 222], [160, 138, 250], [208, 194, 255]],
   viridis: [
-    [68, 1, 84], [72, 23, 105], [71, 42, 122], [67, 61, 132], [61, 78, 138], [53, 94, 141], [46, 109, 142], [41, 123, 142], [35, 137, 142],
-    [31, 151, 139], [33, 165, 133], [46, 179, 124], [70, 192, 111], [101, 203, 94], [137, 213, 72], [176, 221, 47], [216, 226, 25], [253, 231, 37],
+    [68, 1, 84],
+    [72, 23, 105],
+    [71, 42, 122],
+    [67, 61, 132],
+    [61, 78, 138],
+    [53, 94, 141],
+    [46, 109, 142],
+    [41, 123, 142],
+    [35, 137, 142],
+    [31, 151, 139],
+    [33, 165, 133],
+    [46, 179, 124],
+    [70, 192, 111],
+    [101, 203, 94],
+    [137, 213, 72],
+    [176, 221, 47],
+    [216, 226, 25],
+    [253, 231, 37],
   ],
   cividis: [
-    [0, 34, 78], [0, 45, 104], [22, 55, 112], [46, 65, 109], [63, 76, 108], [78, 86, 108], [92, 97, 110], [105, 107, 113], [118, 118, 118],
-    [131, 129, 121], [146, 140, 120], [160, 152, 117], [175, 164, 113], [191, 176, 107], [207, 189, 98], [223, 202, 87], [240, 216, 70], [254, 232, 56],
+    [0, 34, 78],
+    [0, 45, 104],
+    [22, 55, 112],
+    [46, 65, 109],
+    [63, 76, 108],
+    [78, 86, 108],
+    [92, 97, 110],
+    [105, 107, 113],
+    [118, 118, 118],
+    [131, 129, 121],
+    [146, 140, 120],
+    [160, 152, 117],
+    [175, 164, 113],
+    [191, 176, 107],
+    [207, 189, 98],
+    [223, 202, 87],
+    [240, 216, 70],
+    [254, 232, 56],
   ],
 };
 
@@ -241,20 +357,20 @@ export function ramp_at(palette: Look["palette"], share: number): Colour {
   const place = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
   const before = Math.min(Math.trunc(place), stops.length - 2);
   const [from, to, beyond] = [stops[before]!, stops[before + 1]!, place - before];
-  const between = (channel: 0 | 1 | 2) => Math.round(from[channel] + (to[channel] - from[channel]) * beyond);
+  const between = (channel: 0|1|2) => Math.round(from[channel] + (to[channel] - from[channel]) * beyond);
   return [between(0), between(1), between(2), 255];
 }
 
 /** The colours of a scale from `low` to `high` as 256 packed colours; faster than ramp_at() for each organism. */
 export class ScaleTable {
-  private static readonly tables = new Map<Look["palette"], Int32Array>();
+  static readonly #tables = new Map<Look["palette"], Int32Array>();
   readonly colours: Int32Array;
 
   constructor(palette: Look["palette"], readonly low: number, readonly high: number) {
-    let colours = ScaleTable.tables.get(palette);
+    let colours = ScaleTable.#tables.get(palette);
     if (colours === undefined) {
-      colours = Int32Array.from({ length: 256 }, (_, i) => packed(ramp_at(palette, i / 255)));
-      ScaleTable.tables.set(palette, colours);
+      colours = Int32Array.from({length: 256}, (_, i) => packed(ramp_at(palette, i / 255)));
+      ScaleTable.#tables.set(palette, colours);
     }
     this.colours = colours;
   }

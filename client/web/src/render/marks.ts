@@ -1,8 +1,8 @@
 // Marks: the rules of what is drawn at which zoom, in which order and size. The same rules as in evoview
 // (client/viewer/island/marks.h, island_renderer.cpp). All functions are pure.
-import type { SnapshotInfo } from "../core/snapshot";
-import type { Camera } from "../messages";
-import { Rectangle, Size, visible_part } from "./camera";
+import type {SnapshotInfo} from "../core/snapshot";
+import type {Camera} from "../core/messages";
+import {Rectangle, Size, visible_part} from "./camera";
 
 /** Radius of a typical organism. If it is below one pixel on the screen, organisms are too small to see one by one. */
 export const typical_radius_px = 10;
@@ -38,7 +38,8 @@ function overlap(begin: number, size: number, whole: number): number {
  *  organism_count: on the whole island, assumed to be evenly spread. */
 export function too_many_for_dots(camera: Camera, canvas: Size, info: SnapshotInfo, organism_count: number): boolean {
   const visible = visible_part(camera, canvas);
-  const area_px2 = overlap(visible.left, visible.width, info.width_px) * overlap(visible.top, visible.height, info.height_px);
+  const area_px2 =
+    overlap(visible.left, visible.width, info.width_px) * overlap(visible.top, visible.height, info.height_px);
   const count = (organism_count * area_px2) / Math.max(info.width_px * info.height_px, 1);
   return count > dots_max || count > area_px2 * camera.zoom * camera.zoom;
 }
@@ -82,7 +83,8 @@ export function may_touch(rectangle: Rectangle, x: number, y: number, radius: nu
 
 /** Whether the health numbers of all visible organisms are readable: organisms must be large enough, and few enough that the numbers
  *  do not cover the island. */
-export function labels_are_readable(camera: Camera, canvas: Size, visible_count: number, label_zoom_min: number, label_height: number): boolean {
+export function labels_are_readable(
+  camera: Camera, canvas: Size, visible_count: number, label_zoom_min: number, label_height: number): boolean {
   const covered_max = 0.4;
   const label_area = 2 * label_height * label_height;
   return camera.zoom >= label_zoom_min && visible_count * label_area <= covered_max * canvas.width * canvas.height;

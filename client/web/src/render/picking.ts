@@ -6,8 +6,8 @@
 /** Returns the index of the circle at a point, -1 if there is none. All lengths are in px of the island.
  *  pixel: px of the island per pixel of the screen. target: in pixels of the screen. */
 export function circle_at(
-  x: number, y: number, count: number, x_of: (i: number) => number, y_of: (i: number) => number, radius_of: (i: number) => number, pixel: number,
-  target: number): number {
+  x: number, y: number, count: number, x_of: (i: number) => number, y_of: (i: number) => number,
+  radius_of: (i: number) => number, pixel: number, target: number): number {
   const slack = 3 * pixel;
   let found = -1;
   let found_inside = false;

@@ -1,11 +1,11 @@
 // Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland (WebGL2) or Fallback (Canvas2D) draws it.
-import type { Camera, Look, PopulationColumns } from "../messages";
-import type { MinimapPlace, Rectangle, Size } from "./camera";
-import type { DensityGrid } from "./density";
-import type { Interpolator } from "./interpolator";
-import type { Label } from "./labels";
-import type { Colour, IslandColours, ScaleTable, Styles } from "./look";
-import type { Flash, Trails } from "./traces";
+import type {Camera, Look, PopulationColumns} from "../core/messages";
+import type {MinimapPlace, Rectangle, Size} from "./camera";
+import type {DensityGrid} from "./density";
+import type {Interpolator} from "./interpolator";
+import type {Label} from "./labels";
+import type {Colour, IslandColours, ScaleTable, Styles} from "./look";
+import type {Flash, Trails} from "./traces";
 
 export interface Scene {
   canvas: Size; // in CSS pixels
@@ -19,23 +19,23 @@ export interface Scene {
   shown_s: number; // the simulated time that is drawn
   snapshot_version: number; // changes with the snapshots
   colours_version: number; // changes with organism_colours
-  organism_colours: Int32Array | null; // packed, by row of the latest snapshot; null: no colouring
+  organism_colours: Int32Array|null; // packed, by row of the latest snapshot; null: no colouring
   health_max: number; // the arc of a body is complete at this health
   selected: number; // rows of the latest snapshot; -1: none
   pointed_at: number;
-  population: PopulationColumns | null; // of the shown generation
-  trails: Trails | null; // null: not shown
+  population: PopulationColumns|null; // of the shown generation
+  trails: Trails|null; // null: not shown
   flashes: readonly Flash[];
-  shows: "organisms" | "dots" | "density";
+  shows: "organisms"|"dots"|"density";
   density: DensityGrid;
-  density_scale: ScaleTable | null; // if densities are shown
+  density_scale: ScaleTable|null; // if densities are shown
   labels: Label[];
-  minimap: { place: MinimapPlace; frame: Rectangle; grid: DensityGrid; scale: ScaleTable; version: number } | null;
-  preview: { x: number; y: number; radius: number; colour: Colour } | null; // of what a click would place, in CSS pixels
+  minimap: {place: MinimapPlace; frame: Rectangle; grid: DensityGrid; scale: ScaleTable; version: number}|null;
+  preview: {x: number; y: number; radius: number; colour: Colour}|null; // of what a click would place, in CSS pixels
 }
 
 export interface Painter {
-  readonly kind: "webgl2" | "canvas2d";
+  readonly kind: "webgl2"|"canvas2d";
   /** More visible organisms are drawn as densities. */
   readonly organisms_max: number;
   readonly label_height: number; // CSS pixels
@@ -45,11 +45,13 @@ export interface Painter {
 }
 
 /** The part of the canvas inside the walls, in CSS pixels. */
-export function inside_walls(scene: { camera: Camera; canvas: Size }, island: Size): Rectangle {
-  const { camera, canvas } = scene;
+export function inside_walls(scene: {camera: Camera; canvas: Size}, island: Size): Rectangle {
+  const {camera, canvas} = scene;
   return {
-    left: canvas.width / 2 - camera.x_px * camera.zoom, top: canvas.height / 2 - camera.y_px * camera.zoom,
-    width: island.width * camera.zoom, height: island.height * camera.zoom,
+    left: canvas.width / 2 - camera.x_px * camera.zoom,
+    top: canvas.height / 2 - camera.y_px * camera.zoom,
+    width: island.width * camera.zoom,
+    height: island.height * camera.zoom,
   };
 }
 

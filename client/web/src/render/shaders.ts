@@ -5,7 +5,7 @@
 //
 // Texels of a shape: (x, y, w, h), and for "paired" shapes also (previous x, previous y, headings, colour). Positions are in steps; the
 // shader subtracts the camera's centre from them as integers, which is exact, before it multiplies by the zoom.
-import type { Form } from "./look";
+import type {Form} from "./look";
 
 export interface Variant {
   form: Form;
@@ -26,7 +26,8 @@ const forms: readonly Form[] = ["circle", "rectangle", "line", "arrow", "body", 
 function header(variant: Variant): string {
   return "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp isampler2D;\n" +
     forms.map((form, i) => `#define ${form.toUpperCase()} ${i}\n`).join("") +
-    `#define FORM ${variant.form.toUpperCase()}\n#define MOVING ${Number(variant.moving)}\n#define ITEM ${Number(variant.item)}\n` +
+    `#define FORM ${variant.form.toUpperCase()}\n#define MOVING ${Number(variant.moving)}\n#define ITEM ${
+           Number(variant.item)}\n` +
     `#define HEADING ${Number(variant.heading)}\n#define POINT ${Number(variant.point)}\n` +
     `#define BARE ${Number(variant.bare)}\n`;
 }

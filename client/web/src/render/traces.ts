@@ -1,17 +1,21 @@
 // Trails: the paths of all organisms during the last simulated seconds. Flashes: meals and deaths, found by comparing successive
 // snapshots. Both as in evoview (client/viewer/island/marks.h, flashes.cpp). Their memory is used again.
-import type { Items, Snapshot, SnapshotInfo } from "../core/snapshot";
-import { steps_per_px } from "../core/snapshot";
-import { contains, Rectangle } from "./camera";
-import { continues, KeptSnapshot, Points, with_room } from "./interpolator";
-import { traced_max } from "./marks";
+import type {Items, Snapshot, SnapshotInfo} from "../core/snapshot";
+import {steps_per_px} from "../core/snapshot";
+import {contains, Rectangle} from "./camera";
+import {continues, KeptSnapshot, Points, with_room} from "./interpolator";
+import {traced_max} from "./marks";
 
-const in_region = { id: new Uint32Array(traced_max), x: new Int32Array(traced_max), y: new Int32Array(traced_max) };
+const in_region = {
+  id: new Uint32Array(traced_max),
+  x: new Int32Array(traced_max),
+  y: new Int32Array(traced_max)
+};
 
 /** Returns the organisms that have trails; null if they are too many. On a large island that is sent whole, they are those in `region`,
  *  which a View would contain. The result is valid until the next call. */
-export function traced({ info, organisms }: Snapshot, region: Rectangle | null): Items | null {
-  const { id, x, y } = organisms;
+export function traced({info, organisms}: Snapshot, region: Rectangle|null): Items|null {
+  const {id, x, y} = organisms;
   if (id.length < traced_max) {
     return organisms;
   }
@@ -31,7 +35,7 @@ export function traced({ info, organisms }: Snapshot, region: Rectangle | null):
       }
     }
   }
-  return { id: in_region.id.subarray(0, count), x: in_region.x.subarray(0, count), y: in_region.y.subarray(0, count) };
+  return {id: in_region.id.subarray(0, count), x: in_region.x.subarray(0, count), y: in_region.y.subarray(0, count)};
 }
 
 export const trail_interval_s = 0.25;
@@ -51,49 +55,50 @@ export class Trails {
   readonly segments: TrailSegment[] = [];
   /** The positions in the last kept snapshot, from which the paths lead to the present positions. */
   readonly last = new Points();
-  private last_info: SnapshotInfo | null = null;
-  private serial = 0;
-  private readonly spare: TrailSegment[] = [];
+  #last_info: SnapshotInfo|null = null;
+  #serial = 0;
+  readonly #spare: TrailSegment[] = [];
 
   /** organisms: what traced() has returned. */
-  add(info: SnapshotInfo, organisms: Items | null): void {
+  add(info: SnapshotInfo, organisms: Items|null): void {
     if (organisms === null) {
       this.clear();
       return;
     }
-    const { id, x, y } = organisms;
-    const from = this.last_info;
+    const {id, x, y} = organisms;
+    const from = this.#last_info;
     if (from !== null && !continues(info, from)) {
       this.clear();
     } else if (from !== null && info.simulated_s - from.simulated_s < trail_interval_s - 1e-6) {
       return;
     }
-    if (this.last_info !== null) {
-      const segment = this.spare.pop() ?? { serial: 0, from_s: 0, to_s: 0, lines: new Int32Array(0), count: 0 };
-      segment.serial = ++this.serial;
-      segment.from_s = this.last_info.simulated_s;
+    if (this.#last_info !== null) {
+      const segment = this.#spare.pop() ?? {serial: 0, from_s: 0, to_s: 0, lines: new Int32Array(0), count: 0};
+      segment.serial = ++this.#serial;
+      segment.from_s = this.#last_info.simulated_s;
       segment.to_s = info.simulated_s;
       segment.lines = with_room(segment.lines, 4 * id.length);
       segment.count = add_paths(this.last, id, id.length, (j) => x[j]!, (j) => y[j]!, segment.lines);
       this.segments.push(segment);
     }
     while (this.segments.length > 0 && this.segments[0]!.from_s < info.simulated_s - trail_kept_s - 1e-6) {
-      this.spare.push(this.segments.shift()!);
+      this.#spare.push(this.segments.shift()!);
     }
-    this.last_info = info;
+    this.#last_info = info;
     this.last.set(organisms, [], (dots) => dots.organisms);
   }
 
   clear(): void {
-    this.spare.push(...this.segments.splice(0));
-    this.last_info = null;
+    this.#spare.push(...this.segments.splice(0));
+    this.#last_info = null;
     this.last.count = this.last.whole = 0;
   }
 }
 
 /** Writes a line for each organism that is at both places; returns their number. */
 export function add_paths(
-  from: Points, id: Uint32Array, id_count: number, x_of: (j: number) => number, y_of: (j: number) => number, lines: Int32Array, scale = 1): number {
+  from: Points, id: Uint32Array, id_count: number, x_of: (j: number) => number, y_of: (j: number) => number,
+  lines: Int32Array, scale = 1): number {
   let count = 0;
   for (let i = 0, j = 0; i < from.whole && j < id_count;) {
     if (from.id[i]! < id[j]!) {
@@ -116,7 +121,7 @@ export function add_paths(
 // ---- flashes ---------------------------------------------------------------------------------------------------
 
 export interface Flash {
-  kind: "food" | "poison" | "death";
+  kind: "food"|"poison"|"death";
   x_px: number;
   y_px: number;
   radius_px: number; // of the item or organism
@@ -134,7 +139,7 @@ export class Flashes {
   /** Compares the kept snapshot with the next one.
    *
    *  within  the part of the island in which both are complete and flashes are wanted; null: the whole island */
-  add(before: KeptSnapshot, next: Snapshot, within: Rectangle | null): void {
+  add(before: KeptSnapshot, next: Snapshot, within: Rectangle|null): void {
     const now_s = next.info.simulated_s;
     if (before.info === null || !continues(next.info, before.info)) {
       this.all = [];
@@ -146,9 +151,9 @@ export class Flashes {
       return;
     }
     const flash = (kind: Flash["kind"], x: number, y: number, radius_px: number) => {
-      const place = { x: x / steps_per_px, y: y / steps_per_px };
+      const place = {x: x / steps_per_px, y: y / steps_per_px};
       if (within === null || contains(within, place)) {
-        this.all.push({ kind, x_px: place.x, y_px: place.y, radius_px, began_s: now_s });
+        this.all.push({kind, x_px: place.x, y_px: place.y, radius_px, began_s: now_s});
       }
     };
     const ids = next.organisms.id;

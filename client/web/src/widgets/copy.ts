@@ -1,6 +1,6 @@
 // copy: puts a text on the clipboard, also on pages without TLS, for which browsers offer no clipboard to scripts.
-import { Dialog } from "./controls";
-import { h } from "./dom";
+import {Dialog} from "./controls";
+import {h} from "./dom";
 
 /** Returns whether the text is on the clipboard; if not, a dialog shows it. */
 export async function copy_text(text: string, title: string): Promise<boolean> {
@@ -10,7 +10,7 @@ export async function copy_text(text: string, title: string): Promise<boolean> {
   } catch {
     // There is no clipboard, or the browser forbids it.
   }
-  const focused = document.activeElement, field = h("textarea", { class: "visually-hidden", readonly: true });
+  const focused = document.activeElement, field = h("textarea", {class: "visually-hidden", readonly: true});
   field.value = text;
   document.body.append(field);
   field.select();
@@ -27,7 +27,7 @@ export async function copy_text(text: string, title: string): Promise<boolean> {
 
 function show(text: string, title: string): void {
   const dialog = new Dialog(title);
-  const field = h("input", { class: "field copied", readonly: true, value: text, "aria-label": title });
+  const field = h("input", {class: "field copied", readonly: true, value: text, "aria-label": title});
   dialog.body.append(field);
   dialog.element.addEventListener("close", () => dialog.element.remove());
   dialog.open();

@@ -3,18 +3,21 @@
 // Owner        main; one per pane. The pane and the panels read it, and change what is shown by its methods.
 // Polling      organism and population are read at most 4 times a second, and only while the page is visible and something
 //              shows them. Everything else follows from answers, events and snapshots.
-import { Changes } from "./changes";
-import { experiment_text } from "./texts";
-import { Refusal, type Server } from "./server";
-import { of_browser } from "./storage";
-import type { Moment, RunRange } from "./time_scale";
-import { default_look } from "../render/look";
-import type { Drawing, FromWorker, Look, Message, PopulationColumns } from "../messages";
-import type { SnapshotInfo } from "../core/snapshot";
+import {experiment_text} from "../texts/texts";
+
+import {Changes} from "./changes";
+
+import {Refusal, type Server} from "./server";
+import {of_browser} from "./storage";
+import type {Moment, RunRange} from "./time_scale";
+import {default_look} from "../render/look";
+import type {Drawing, FromWorker, Look, Message, PopulationColumns} from "../core/messages";
+import type {SnapshotInfo} from "../core/snapshot";
 
 const rate_default_hz = 30; // snapshots per second
 const poll_ms = 250;
-const missed_wait_min_ms = 1000, missed_wait_factor = 4; // at most a fifth of the time goes into reading generations whose events were dropped
+const missed_wait_min_ms = 1000,
+      missed_wait_factor = 4; // at most a fifth of the time goes into reading generations whose events were dropped
 const range_ms = 1000; // between two requests for the range of a replay, which grows with the live world
 const no_runs = "This server stores no runs, so it cannot replay them: start it without --keep-nothing";
 const seek_wait_ms = 5000; // for the first snapshot after a seek
@@ -27,19 +30,19 @@ export class ViewedWorld {
   /** Name of the world that is drawn: `name`, or the replay's world. */
   shown = "";
   island = 0;
-  snapshot: SnapshotInfo | null = null; // the newest drawn
-  healthiest: { id: number; health: number }[] = [];
-  drawing: Drawing | null = null; // what the worker drew last
+  snapshot: SnapshotInfo|null = null; // the newest drawn
+  healthiest: {id: number; health: number}[] = [];
+  drawing: Drawing|null = null; // what the worker drew last
   /** GenerationStatistics of `name` of all islands, oldest first; and AppliedChange messages, oldest first. */
   history: Message[] = [];
   changes: Message[] = [];
   history_complete = false;
-  parameters: Message | null = null; // ParameterSet of `shown`
-  selected: number | null = null; // id of the selected organism
-  selected_at: { x_px: number; y_px: number; health: number } | null = null; // in the drawn snapshot
+  parameters: Message|null = null; // ParameterSet of `shown`
+  selected: number|null = null; // id of the selected organism
+  selected_at: {x_px: number; y_px: number; health: number}|null = null; // in the drawn snapshot
   follow = false; // whether the camera follows the selected organism
-  organism: Message | null = null; // OrganismInfo of the selected organism, polled 4 times a second
-  population: PopulationColumns | null = null; // of the shown generation, if a panel or the look needs it
+  organism: Message|null = null; // OrganismInfo of the selected organism, polled 4 times a second
+  population: PopulationColumns|null = null; // of the shown generation, if a panel or the look needs it
   look: Look;
   problem = ""; // why nothing is drawn: the server refused the subscription or the replay
   opening = false; // a replay is being opened or moved
@@ -50,13 +53,13 @@ export class ViewedWorld {
   #snapshot_listeners = new Set<(snapshot: SnapshotInfo) => void>();
   #end: (() => void)[] = [];
   #replay = ""; // name of the replay's world; empty: live
-  #moment: Moment | null = null; // the moment of the past that was asked for last
+  #moment: Moment|null = null; // the moment of the past that was asked for last
   #seek_number = 0;
   #range_polled_ms = 0;
   /** The first moment that the last replay could show. */
-  #begin: { run_id: string; generation: number; tick: number } | null = null;
+  #begin: {run_id: string; generation: number; tick: number}|null = null;
   #unanswered = 0; // commands of this page
-  #assumed: { state?: string; speed?: Message } = {}; // what the unanswered commands will bring about
+  #assumed: {state?: string; speed?: Message} = {}; // what the unanswered commands will bring about
   #nothing_to_resume = false; // the world was only stepped, so it has no run to resume
   #factor = 1; // the last speed that was not the maximum
   #needs_of_population = 0;
@@ -71,8 +74,10 @@ export class ViewedWorld {
   #history_number = 0;
   #history_of = ""; // run_id of `history`; empty: not known
   #missed_wait_ms = missed_wait_min_ms;
-  #missed_after: number | null = null; // the last generation before events were dropped, until the missed ones are requested
-  #remembered: { run_id: string; island: number; generation: number; organism: number; follow: boolean } | null = null; // the organism selected last
+  #missed_after: number|null =
+    null; // the last generation before events were dropped, until the missed ones are requested
+  #remembered: {run_id: string; island: number; generation: number; organism: number; follow: boolean}|null =
+    null; // the organism selected last
 
   constructor(readonly server: Server, readonly pane: number) {
     this.look = stored_look();
@@ -87,7 +92,7 @@ export class ViewedWorld {
 
   // ---- what is shown ----
 
-  get info(): Message | null {
+  get info(): Message|null {
     return this.server.world(this.shown); // WorldInfo of `shown`
   }
 
@@ -113,7 +118,7 @@ export class ViewedWorld {
     return this.#assumed.state ?? (this.#snapshot_is_newer ? this.snapshot!.state : this.info?.state ?? "");
   }
 
-  get speed(): Message | undefined {
+  get speed(): Message|undefined {
     return this.#assumed.speed ?? (this.#snapshot_is_newer ? this.snapshot!.speed : this.info?.speed);
   }
 
@@ -134,7 +139,8 @@ export class ViewedWorld {
 
   get #snapshot_is_newer(): boolean {
     const snapshot = this.snapshot, info = this.info;
-    return snapshot !== null && snapshot.world === this.shown && (!info || (info.run_id === snapshot.run_id && snapshot.tick > Number(info.tick ?? 0)));
+    return snapshot !== null && snapshot.world === this.shown &&
+      (!info || (info.run_id === snapshot.run_id && snapshot.tick > Number(info.tick ?? 0)));
   }
 
   show(world: string, island = 0): void {
@@ -156,11 +162,11 @@ export class ViewedWorld {
   }
 
   /** Limits the number of snapshots per second; null: the default. */
-  set_rate(rate_hz: number | null): void {
+  set_rate(rate_hz: number|null): void {
     const before = this.rate_hz;
     this.rate_hz = rate_hz ?? rate_default_hz;
     if (this.rate_hz !== before && this.shown) {
-      this.server.post({ kind: "watch", pane: this.pane, world: this.shown, island: this.island, rate_hz: this.rate_hz });
+      this.server.post({kind: "watch", pane: this.pane, world: this.shown, island: this.island, rate_hz: this.rate_hz});
     }
   }
 
@@ -169,7 +175,7 @@ export class ViewedWorld {
     return this.rate_hz !== rate_default_hz;
   }
 
-  select(organism: number | null): void {
+  select(organism: number|null): void {
     if (organism === this.selected) {
       return;
     }
@@ -191,9 +197,9 @@ export class ViewedWorld {
   }
 
   set_look(change: Partial<Look>): void {
-    this.look = { ...this.look, ...change };
+    this.look = {...this.look, ...change};
     of_browser.set("look", JSON.stringify(this.look));
-    this.server.post({ kind: "look", pane: this.pane, look: this.look });
+    this.server.post({kind: "look", pane: this.pane, look: this.look});
     this.#poll();
     this.#changes.notify();
   }
@@ -223,17 +229,19 @@ export class ViewedWorld {
   }
 
   /** The moment that a running seek leads to. */
-  get target(): Moment | null {
+  get target(): Moment|null {
     return this.opening ? this.#moment : null;
   }
 
   /** The moments of the run that can be shown; of a live world, as far as the page knows them. */
-  get range(): RunRange | null {
+  get range(): RunRange|null {
     const info = this.info, replay = info?.replay;
     if (replay) {
       return {
-        first_generation: Number(replay.first_generation ?? 1), last_generation: Number(replay.last_generation ?? 1),
-        first_tick: Number(replay.first_tick ?? 0), last_tick: Number(replay.last_tick ?? 0),
+        first_generation: Number(replay.first_generation ?? 1),
+        last_generation: Number(replay.last_generation ?? 1),
+        first_tick: Number(replay.first_tick ?? 0),
+        last_tick: Number(replay.last_tick ?? 0),
       };
     }
     if (!info) {
@@ -241,26 +249,27 @@ export class ViewedWorld {
     }
     const last_generation = this.#snapshot_is_newer ? this.snapshot!.generation : Number(info.generation ?? 1);
     const oldest = Math.min(Number(this.history[0]?.generation ?? last_generation), last_generation);
-    const begin = this.#begin?.run_id === info.run_id ? this.#begin! : { generation: oldest, tick: 0 };
-    return { first_generation: begin.generation, last_generation, first_tick: begin.tick, last_tick: this.tick };
+    const begin = this.#begin?.run_id === info.run_id ? this.#begin! : {generation: oldest, tick: 0};
+    return {first_generation: begin.generation, last_generation, first_tick: begin.tick, last_tick: this.tick};
   }
 
   /** The first and the last tick of a generation, counted from the start of the run; null if the history does not contain them. */
-  ticks_of(generation: number): { first: number; last: number } | null {
+  ticks_of(generation: number): {first: number; last: number}|null {
     const range = this.range, snapshot = this.snapshot;
     if (!range) {
       return null;
     }
-    const begun = snapshot?.generation === generation ? snapshot.tick - snapshot.generation_tick
-      : generation === 1 ? 0 : this.#end_tick(generation - 1);
+    const begun = snapshot?.generation === generation ? snapshot.tick - snapshot.generation_tick :
+      generation === 1                                ? 0 :
+                                                        this.#end_tick(generation - 1);
     const is_first = this.is_replay && generation === range.first_generation;
     const first = is_first ? Math.max(range.first_tick, begun ?? 0) : begun; // a fork may begin within a generation
     const last = generation === range.last_generation ? range.last_tick : this.#end_tick(generation);
-    return first === null || last === null ? null : { first, last };
+    return first === null || last === null ? null : {first, last};
   }
 
   /** The last tick of a generation that has ended; null if the history does not contain it. */
-  #end_tick(generation: number): number | null {
+  #end_tick(generation: number): number|null {
     let low = 0, high = this.history.length; // the history is ordered by generation and island
     while (low < high) {
       const middle = (low + high) >> 1;
@@ -278,7 +287,7 @@ export class ViewedWorld {
    *
    *  tick  since the generation began; absent: its first moment */
   show_past(generation: number, tick?: number): Promise<void> {
-    return this.show_moment({ generation, ...(tick === undefined ? {} : { tick }) });
+    return this.show_moment({generation, ...(tick === undefined ? {} : {tick})});
   }
 
   /** Shows the first moment of the generation that is `by` after the shown one, or after that of a running seek. */
@@ -291,10 +300,10 @@ export class ViewedWorld {
 
   /** Shows the moment that is `by` ticks after the shown one, or after the one that a running seek leads to. */
   async move_ticks(by: number): Promise<void> {
-    const { range, target, snapshot } = this;
+    const range = this.range, target = this.target, snapshot = this.snapshot;
     const from = target && target.generation === undefined ? target.tick : snapshot?.tick;
     if (range && from !== undefined) {
-      await this.show_moment({ tick: Math.min(range.last_tick, Math.max(range.first_tick, from + by)) });
+      await this.show_moment({tick: Math.min(range.last_tick, Math.max(range.first_tick, from + by))});
     }
   }
 
@@ -310,7 +319,7 @@ export class ViewedWorld {
       if (wanted === undefined || !(first > wanted)) {
         throw error;
       }
-      await this.show_moment({ ...moment, [name]: first });
+      await this.show_moment({...moment, [name]: first});
     }
   }
 
@@ -322,21 +331,22 @@ export class ViewedWorld {
     this.#changes.notify();
     try {
       if (!this.#replay) {
-        const info = await this.server.request("open_replay", { world: name, at: moment });
+        const info = await this.server.request("open_replay", {world: name, at: moment});
         if (name !== this.name || this.#moment === null || this.#replay) {
-          await this.server.request("close_replay", { world: info.name }); // another world, the live world or another replay is shown now
+          await this.server.request(
+            "close_replay", {world: info.name}); // another world, the live world or another replay is shown now
           return;
         }
         this.#replay = info.name;
-        const { first_generation = 1, first_tick = 0 } = info.replay ?? {};
-        this.#begin = { run_id: info.run_id, generation: Number(first_generation), tick: Number(first_tick) };
+        const {first_generation = 1, first_tick = 0} = info.replay ?? {};
+        this.#begin = {run_id: info.run_id, generation: Number(first_generation), tick: Number(first_tick)};
         this.#watch(info.name, this.island);
         if (number !== this.#seek_number) { // another moment was asked for meanwhile
           return await this.show_moment(this.#moment);
         }
         await this.#drawn(Number(info.tick ?? 0));
       } else {
-        const info = await this.server.request("seek", { world: this.#replay, to: moment });
+        const info = await this.server.request("seek", {world: this.#replay, to: moment});
         if (number === this.#seek_number) {
           await this.#drawn(Number(info.tick ?? 0));
         }
@@ -374,7 +384,8 @@ export class ViewedWorld {
     const replay = this.#replay;
     this.#replay = "";
     if (replay) {
-      this.server.request("close_replay", { world: replay }).catch(() => undefined); // it ends with the session at the latest
+      this.server.request("close_replay", {world: replay})
+        .catch(() => undefined); // it ends with the session at the latest
     }
   }
 
@@ -384,7 +395,7 @@ export class ViewedWorld {
   }
 
   /** tick: of the snapshot; null: any. */
-  #drawn(tick: number | null): Promise<void> {
+  #drawn(tick: number|null): Promise<void> {
     return new Promise((resolve) => {
       const end = (): void => {
         clearTimeout(timer);
@@ -392,7 +403,9 @@ export class ViewedWorld {
         resolve();
       };
       const listener = (snapshot: SnapshotInfo): void => {
-        if (snapshot.world === this.shown && (tick === null || snapshot.tick === tick || snapshot.state === "RUN_STATE_RUNNING")) {
+        if (
+          snapshot.world === this.shown &&
+          (tick === null || snapshot.tick === tick || snapshot.state === "RUN_STATE_RUNNING")) {
           end();
         }
       };
@@ -407,18 +420,20 @@ export class ViewedWorld {
   // ---- run control ----
 
   run(generations?: number): Promise<void> {
-    return this.#command({ state: "RUN_STATE_RUNNING" }, "run", generations === undefined ? {} : { generations });
+    return this.#command({state: "RUN_STATE_RUNNING"}, "run", generations === undefined ? {} : {generations});
   }
 
   pause(): Promise<void> {
-    return this.#command({ state: "RUN_STATE_PAUSED" }, "pause", {});
+    return this.#command({state: "RUN_STATE_PAUSED"}, "pause", {});
   }
 
   async resume(): Promise<void> {
     try {
-      await this.#command({ state: "RUN_STATE_RUNNING" }, "resume", {});
+      await this.#command({state: "RUN_STATE_RUNNING"}, "resume", {});
     } catch (error) {
-      if (error instanceof Refusal && error.reason === "REASON_NOTHING_TO_RESUME") { // another client has only stepped the world
+      if (
+        error instanceof Refusal &&
+        error.reason === "REASON_NOTHING_TO_RESUME") { // another client has only stepped the world
         return await this.run();
       }
       throw error;
@@ -430,7 +445,7 @@ export class ViewedWorld {
 
   run_until_tick(tick: number): Promise<void> {
     this.#nothing_to_resume ||= this.state === "RUN_STATE_WAITING";
-    return this.#command({}, "run_until_tick", { tick });
+    return this.#command({}, "run_until_tick", {tick});
   }
 
   /** Runs, pauses or resumes the world, whichever its state allows. */
@@ -453,11 +468,11 @@ export class ViewedWorld {
     await this.run_until_tick(this.tick + ticks);
   }
 
-  set_speed(speed: { real_time_factor?: number; max?: boolean }): Promise<void> {
+  set_speed(speed: {real_time_factor?: number; max?: boolean}): Promise<void> {
     if (speed.real_time_factor !== undefined) {
       this.#factor = speed.real_time_factor = Math.min(Math.max(speed.real_time_factor, speed_min), speed_max);
     }
-    return this.#command({ speed }, "set_speed", { speed });
+    return this.#command({speed}, "set_speed", {speed});
   }
 
   /** The speed that is set again when the maximum is turned off. */
@@ -467,23 +482,23 @@ export class ViewedWorld {
 
   multiply_speed(by: number): Promise<void> {
     if (this.speed?.max) {
-      return by > 1 ? Promise.resolve() : this.set_speed({ real_time_factor: this.#factor });
+      return by > 1 ? Promise.resolve() : this.set_speed({real_time_factor: this.#factor});
     }
-    return this.set_speed({ real_time_factor: this.factor * by });
+    return this.set_speed({real_time_factor: this.factor * by});
   }
 
   toggle_max_speed(): Promise<void> {
-    return this.set_speed(this.speed?.max ? { real_time_factor: this.#factor } : { max: true });
+    return this.set_speed(this.speed?.max ? {real_time_factor: this.#factor} : {max: true});
   }
 
-  async #command(assumed: { state?: string; speed?: Message }, kind: string, fields: Message): Promise<void> {
+  async #command(assumed: {state?: string; speed?: Message}, kind: string, fields: Message): Promise<void> {
     this.#unanswered += 1;
     if (this.server.may(kind, this.shown)) {
-      this.#assumed = { ...this.#assumed, ...assumed };
+      this.#assumed = {...this.#assumed, ...assumed};
       this.#changes.notify();
     }
     try {
-      await this.server.request(kind, { world: this.shown, ...fields });
+      await this.server.request(kind, {world: this.shown, ...fields});
       this.#nothing_to_resume &&= kind !== "run" && kind !== "resume";
     } finally {
       this.#unanswered -= 1;
@@ -509,7 +524,7 @@ export class ViewedWorld {
 
   close(): void {
     this.#close_replay();
-    this.server.post({ kind: "unwatch", pane: this.pane });
+    this.server.post({kind: "unwatch", pane: this.pane});
     for (const end of this.#end) {
       end();
     }
@@ -520,9 +535,9 @@ export class ViewedWorld {
     const factor = this.info?.speed?.real_time_factor;
     this.#factor = factor ?? 1;
     this.#post_selection();
-    this.server.post({ kind: "population", pane: this.pane, columns: null });
-    this.server.post({ kind: "look", pane: this.pane, look: this.look });
-    this.server.post({ kind: "watch", pane: this.pane, world, island, rate_hz: this.rate_hz });
+    this.server.post({kind: "population", pane: this.pane, columns: null});
+    this.server.post({kind: "look", pane: this.pane, look: this.look});
+    this.server.post({kind: "watch", pane: this.pane, world, island, rate_hz: this.rate_hz});
     this.#read_parameters();
     this.#changes.notify();
   }
@@ -542,7 +557,7 @@ export class ViewedWorld {
   }
 
   #post_selection(): void {
-    this.server.post({ kind: "select", pane: this.pane, organism: this.selected, hovered: null, follow: this.follow });
+    this.server.post({kind: "select", pane: this.pane, organism: this.selected, hovered: null, follow: this.follow});
   }
 
   #take(message: FromWorker): void {
@@ -582,7 +597,8 @@ export class ViewedWorld {
         this.drawing = message.drawing;
         break;
       case "watch_refused":
-        this.problem = this.opening ? "" : message.message; // a replay that ended with its session is being opened again
+        this.problem =
+          this.opening ? "" : message.message; // a replay that ended with its session is being opened again
         break;
       default:
         return;
@@ -592,15 +608,23 @@ export class ViewedWorld {
 
   #remember_selection(): void {
     const snapshot = this.snapshot;
-    this.#remembered = this.selected === null || !snapshot ? null
-      : { run_id: snapshot.run_id, island: this.island, generation: snapshot.generation, organism: this.selected, follow: this.follow };
+    this.#remembered = this.selected === null || !snapshot ? null : {
+      run_id: snapshot.run_id,
+      island: this.island,
+      generation: snapshot.generation,
+      organism: this.selected,
+      follow: this.follow
+    };
   }
 
   /** Ends the selection with its generation: the next one uses the same ids. Selects the organism again when its generation is shown again. */
   #follow_generation(next: SnapshotInfo): void {
     const remembered = this.#remembered;
-    const again = remembered !== null && remembered.run_id === next.run_id && remembered.island === this.island && remembered.generation === next.generation;
-    if (again ? this.selected === null : this.selected !== null && this.snapshot !== null && this.snapshot.generation !== next.generation) {
+    const again = remembered !== null && remembered.run_id === next.run_id && remembered.island === this.island &&
+      remembered.generation === next.generation;
+    if (
+      again ? this.selected === null :
+              this.selected !== null && this.snapshot !== null && this.snapshot.generation !== next.generation) {
       this.selected = again ? remembered.organism : null;
       this.follow = again && remembered.follow;
       this.selected_at = this.organism = null;
@@ -617,7 +641,7 @@ export class ViewedWorld {
     if (this.#moment) {
       const shown = this.snapshot?.world === this.#replay ? this.snapshot : null;
       this.#replay = "";
-      const at = this.opening || !shown ? this.#moment : { generation: shown.generation, tick: shown.generation_tick };
+      const at = this.opening || !shown ? this.#moment : {generation: shown.generation, tick: shown.generation_tick};
       this.#reopen(at, shown).catch((error: Error) => {
         this.#watch(this.name, this.island);
         this.problem = error.message;
@@ -628,10 +652,10 @@ export class ViewedWorld {
   }
 
   /** Opens the replay again, with the speed that it had, and runs it if it ran. */
-  async #reopen(at: Moment, shown: SnapshotInfo | null): Promise<void> {
+  async #reopen(at: Moment, shown: SnapshotInfo|null): Promise<void> {
     await this.show_moment(at);
     if (shown?.speed && this.#replay) {
-      await this.set_speed({ ...shown.speed });
+      await this.set_speed({...shown.speed});
     }
     if (shown?.state === "RUN_STATE_RUNNING" && this.#replay) {
       await this.resume();
@@ -644,7 +668,9 @@ export class ViewedWorld {
       this.#read_missed();
       return;
     }
-    if (event.world === this.shown && (event.parameters_changed || event.change_planned || event.change_cancelled || event.change_dropped)) {
+    if (
+      event.world === this.shown &&
+      (event.parameters_changed || event.change_planned || event.change_cancelled || event.change_dropped)) {
       this.#read_parameters();
     }
     if (event.placed && event.world === this.shown) {
@@ -680,7 +706,7 @@ export class ViewedWorld {
       this.#forget("", 0);
       this.history = [];
       this.changes = [];
-      this.server.post({ kind: "unwatch", pane: this.pane });
+      this.server.post({kind: "unwatch", pane: this.pane});
     }
     this.#changes.notify();
   }
@@ -689,16 +715,20 @@ export class ViewedWorld {
 
   /** The number of generations whose statistics are kept: as many as the server keeps, but fewer in worlds of many genes or islands. */
   get #generations_kept(): number {
-    const world = this.server.world(this.name), genes = Math.max(1, world?.gene_names?.length ?? 1), islands = Math.max(1, world?.island_count ?? 1);
-    return Math.min(this.server.limits.history_generations_kept ?? Infinity, Math.ceil(gene_statistics_max / (genes * islands)));
+    const world = this.server.world(this.name), genes = Math.max(1, world?.gene_names?.length ?? 1),
+          islands = Math.max(1, world?.island_count ?? 1);
+    return Math.min(
+      this.server.limits.history_generations_kept ?? Infinity, Math.ceil(gene_statistics_max / (genes * islands)));
   }
 
   /** Adds the statistics of a generation that has ended. Drops the oldest ones from time to time, not each time. */
   #append(statistics: Message[]): void {
     const last: number = this.history[this.history.length - 1]?.generation ?? 0;
     const of_last = this.history.slice(-statistics.length);
-    this.history.push(...statistics.filter((one) => one.generation > last
-      || (one.generation === last && !of_last.some((known) => known.generation === last && (known.island ?? 0) === (one.island ?? 0)))));
+    this.history.push(...statistics.filter(
+      (one) => one.generation > last ||
+        (one.generation === last &&
+         !of_last.some((known) => known.generation === last && (known.island ?? 0) === (one.island ?? 0)))));
     const kept = this.#generations_kept * Math.max(1, statistics.length);
     if (this.history.length > 1.1 * kept) {
       this.history = this.history.slice(-kept);
@@ -720,7 +750,8 @@ export class ViewedWorld {
     let next = oldest > 1 ? oldest : undefined; // absent: the oldest that the server keeps
     try {
       do {
-        const page: Message = await this.server.request("get_history", { world, ...(next === undefined ? {} : { first_generation: next }) });
+        const page: Message =
+          await this.server.request("get_history", {world, ...(next === undefined ? {} : {first_generation: next})});
         if (number !== this.#history_number) {
           return;
         }
@@ -729,7 +760,8 @@ export class ViewedWorld {
         next = page.next_generation;
       } while (next !== undefined);
       const last: number = generations[generations.length - 1]?.generation ?? 0;
-      this.history = [...generations, ...this.history.filter((one) => one.generation > last)]; // some have ended meanwhile
+      this.history =
+        [...generations, ...this.history.filter((one) => one.generation > last)]; // some have ended meanwhile
       this.changes = changes;
       this.history_complete = true;
     } catch {
@@ -752,10 +784,11 @@ export class ViewedWorld {
     const after: number = this.#missed_after ?? 0, read: Message[] = [];
     this.#missed_after = null;
     const begun = performance.now();
-    let next: number | undefined = Math.max(after + 1, Number(this.server.world(this.name)?.generation ?? 1) - this.#generations_kept);
+    let next: number|undefined =
+      Math.max(after + 1, Number(this.server.world(this.name)?.generation ?? 1) - this.#generations_kept);
     try {
       while (next !== undefined) {
-        const page: Message = await this.server.request("get_history", { world: this.name, first_generation: next });
+        const page: Message = await this.server.request("get_history", {world: this.name, first_generation: next});
         if (number !== this.#history_number) {
           return;
         }
@@ -763,7 +796,10 @@ export class ViewedWorld {
         next = page.next_generation;
       }
       const last: number = read.length > 0 ? read[read.length - 1]!.generation : after;
-      this.history = [...this.history.filter((one) => one.generation <= after), ...read, ...this.history.filter((one) => one.generation > last)];
+      this.history = [
+        ...this.history.filter((one) => one.generation <= after), ...read,
+        ...this.history.filter((one) => one.generation > last)
+      ];
       void this.#read_changes();
       this.#missed_wait_ms = Math.max(missed_wait_min_ms, missed_wait_factor * (performance.now() - begun));
     } catch {
@@ -777,7 +813,7 @@ export class ViewedWorld {
     const number = this.#history_number;
     const first = Math.max(1, Number(this.server.world(this.name)?.generation ?? 1) - 1);
     try {
-      const page = await this.server.request("get_history", { world: this.name, first_generation: first });
+      const page = await this.server.request("get_history", {world: this.name, first_generation: first});
       if (number === this.#history_number) {
         this.changes = [...this.changes.filter((change) => (change.generation ?? 0) < first), ...(page.changes ?? [])];
         this.#changes.notify();
@@ -798,16 +834,20 @@ export class ViewedWorld {
     this.#parameters_pending = true;
     this.#parameters_stale = false;
     const world = this.shown;
-    this.server.request("get_parameters", { world }).then((set) => {
-      if (world === this.shown) {
-        this.parameters = set;
-      } else {
-        this.#parameters_stale = true;
-      }
-    }, () => undefined).finally(() => {
-      this.#parameters_pending = false;
-      this.#changes.notify();
-    });
+    this.server.request("get_parameters", {world})
+      .then(
+        (set) => {
+          if (world === this.shown) {
+            this.parameters = set;
+          } else {
+            this.#parameters_stale = true;
+          }
+        },
+        () => undefined)
+      .finally(() => {
+        this.#parameters_pending = false;
+        this.#changes.notify();
+      });
   }
 
   #poll(): void {
@@ -819,7 +859,7 @@ export class ViewedWorld {
     }
     if (this.#replay && performance.now() >= this.#range_polled_ms + range_ms) {
       this.#range_polled_ms = performance.now();
-      this.server.request("get_statistics", { world: this.#replay }).catch(() => undefined); // Server takes the WorldInfo
+      this.server.request("get_statistics", {world: this.#replay}).catch(() => undefined); // Server takes the WorldInfo
     }
     this.#poll_organism();
     void this.#poll_population();
@@ -833,21 +873,25 @@ export class ViewedWorld {
     this.#organism_pending = true;
     this.#organism_tick = tick;
     const world = this.shown, island = this.island;
-    this.server.request("get_organism", { world, island, organism }).then((info) => {
-      if (world === this.shown && island === this.island && organism === this.selected) {
-        this.organism = info;
-        this.#changes.notify();
-      }
-    }, (error: Refusal) => {
-      if (error.reason === "REASON_ORGANISM_NOT_FOUND" && organism === this.selected && world === this.shown) {
-        this.select(null);
-      }
-    }).finally(() => {
-      this.#organism_pending = false;
-      if (organism !== this.selected) {
-        this.#poll();
-      }
-    });
+    this.server.request("get_organism", {world, island, organism})
+      .then(
+        (info) => {
+          if (world === this.shown && island === this.island && organism === this.selected) {
+            this.organism = info;
+            this.#changes.notify();
+          }
+        },
+        (error: Refusal) => {
+          if (error.reason === "REASON_ORGANISM_NOT_FOUND" && organism === this.selected && world === this.shown) {
+            this.select(null);
+          }
+        })
+      .finally(() => {
+        this.#organism_pending = false;
+        if (organism !== this.selected) {
+          this.#poll();
+        }
+      });
   }
 
   get #look_needs_population(): boolean {
@@ -864,7 +908,8 @@ export class ViewedWorld {
     }
     const of = [this.shown, this.island, snapshot.run_id, snapshot.generation].join(" ");
     const count: number = snapshot.live?.organism_count ?? 0;
-    const changes = this.look.forces !== "none" && snapshot.state === "RUN_STATE_RUNNING"; // forces differ from tick to tick
+    const changes =
+      this.look.forces !== "none" && snapshot.state === "RUN_STATE_RUNNING"; // forces differ from tick to tick
     // Large populations are read less often: at most half of the time goes into reading.
     const due = performance.now() >= this.#population_polled_ms;
     if (of === this.#population_of && !this.#placed && !(changes && due) || count === 0) {
@@ -877,8 +922,10 @@ export class ViewedWorld {
       const pages: Message[] = [];
       let rows = 0, total = 1;
       while (rows < total) {
-        const page = await this.server.request("get_population", { world, island, first_organism: rows });
-        if (world !== this.shown || island !== this.island || (pages.length > 0 && page.generation !== pages[0]!.generation)) {
+        const page = await this.server.request("get_population", {world, island, first_organism: rows});
+        if (
+          world !== this.shown || island !== this.island ||
+          (pages.length > 0 && page.generation !== pages[0]!.generation)) {
           return; // another world or generation is shown now
         }
         pages.push(page);
@@ -890,10 +937,11 @@ export class ViewedWorld {
       }
       this.population = columns_of(pages, rows, island, this.gene_names);
       this.#population_of = [world, island, snapshot.run_id, this.population.generation].join(" ");
-      this.server.post({ kind: "population", pane: this.pane, columns: this.population });
+      this.server.post({kind: "population", pane: this.pane, columns: this.population});
       this.#changes.notify();
     } catch {
-      this.#population_of = of; // refused: the world has no bodies, or the session ended; the next generation tries again
+      this.#population_of =
+        of; // refused: the world has no bodies, or the session ended; the next generation tries again
     } finally {
       this.#population_pending = false;
       this.#population_polled_ms = performance.now() + Math.max(poll_ms, performance.now() - begun);
@@ -903,11 +951,11 @@ export class ViewedWorld {
 
 /** Joins pages of the population. A column of little-endian numbers has no alignment in a message, so it is copied. */
 function columns_of(pages: Message[], rows: number, island: number, gene_names: string[]): PopulationColumns {
-  const bytes_of = (field: string, count: number, size: number): Uint8Array[] | null => {
+  const bytes_of = (field: string, count: number, size: number): Uint8Array[]|null => {
     if (pages.some((page) => (page[field]?.length ?? 0) !== count * size * (page.count ?? 0))) {
       return null;
     }
-    return Array.from({ length: count }, (_, column) => {
+    return Array.from({length: count}, (_, column) => {
       const all = new Uint8Array(rows * size);
       let at = 0;
       for (const page of pages) {
@@ -918,7 +966,8 @@ function columns_of(pages: Message[], rows: number, island: number, gene_names: 
       return all;
     });
   };
-  const floats = (field: string, count: number): Float32Array[] | null => bytes_of(field, count, 4)?.map((bytes) => new Float32Array(bytes.buffer)) ?? null;
+  const floats = (field: string, count: number): Float32Array[]|null =>
+    bytes_of(field, count, 4)?.map((bytes) => new Float32Array(bytes.buffer)) ?? null;
   const founders = bytes_of("founders", 1, 4);
   return {
     generation: pages[0]?.generation ?? 0,

@@ -1,5 +1,5 @@
 // plot_layout: ticks, zoomed ranges, running means, the points with which a long series is drawn, and groups of marks. Pure functions.
-import { nice_step, with_separators } from "./numbers";
+import {nice_step, with_separators} from "../texts/numbers";
 
 export type Numbers = ArrayLike<number>;
 
@@ -12,7 +12,7 @@ export interface Range {
 }
 
 /** Returns the smallest range that contains the finite numbers of indices begin to end - 1; null if there is none. */
-export function range_of(numbers: Numbers, begin = 0, end = numbers.length): Range | null {
+export function range_of(numbers: Numbers, begin = 0, end = numbers.length): Range|null {
   let min = Infinity, max = -Infinity;
   for (let i = begin; i < end; ++i) {
     const number = numbers[i] as number;
@@ -23,11 +23,11 @@ export function range_of(numbers: Numbers, begin = 0, end = numbers.length): Ran
       max = number;
     }
   }
-  return min <= max ? { min, max } : null;
+  return min <= max ? {min, max} : null;
 }
 
-export function joined(a: Range | null, b: Range | null): Range | null {
-  return a === null ? b : b === null ? a : { min: Math.min(a.min, b.min), max: Math.max(a.max, b.max) };
+export function joined(a: Range|null, b: Range|null): Range|null {
+  return a === null ? b : b === null ? a : {min: Math.min(a.min, b.min), max: Math.max(a.max, b.max)};
 }
 
 /** Widens a range by `share` of its width at each end, and at least so much that it is not empty. */
@@ -35,16 +35,16 @@ export function with_room(range: Range, share: number): Range {
   const middle = range.min / 2 + range.max / 2;
   const least = Math.max(Math.abs(middle) * 1e-9, 1e-12);
   const half = Math.max((range.max / 2 - range.min / 2) * (1 + 2 * share), least);
-  return { min: middle - half, max: middle + half };
+  return {min: middle - half, max: middle + half};
 }
 
 /** Returns at most `count_max` round numbers inside the range. Their distance `step` is 1, 2 or 5 times a power of ten.
  *
  *  step_min  least distance of two ticks; 1 for counts */
-export function ticks_in(range: Range, count_max: number, step_min = 0): { step: number; at: number[] } {
+export function ticks_in(range: Range, count_max: number, step_min = 0): {step: number; at: number[]} {
   const rough = (range.max - range.min) / Math.max(count_max, 1);
   if (!(rough > 0) || !Number.isFinite(rough)) {
-    return { step: 1, at: [] };
+    return {step: 1, at: []};
   }
   for (let step = nice_step(Math.max(rough / 2, step_min));; step = nice_step(1.5 * step)) {
     const first = Math.ceil(range.min / step - 1e-9), last = Math.floor(range.max / step + 1e-9);
@@ -53,7 +53,7 @@ export function ticks_in(range: Range, count_max: number, step_min = 0): { step:
       for (let number = first; number <= last; ++number) {
         at.push(number === 0 ? 0 : number * step);
       }
-      return { step, at };
+      return {step, at};
     }
   }
 }
@@ -72,7 +72,7 @@ export function tick_label(tick: number, step: number): string {
 export function moved(shown: Range, by: number, whole: Range): Range {
   const least = whole.min - shown.min;
   const shift = Math.min(Math.max(by, least), Math.max(whole.max - shown.max, least));
-  return { min: shown.min + shift, max: shown.max + shift };
+  return {min: shown.min + shift, max: shown.max + shift};
 }
 
 /** Zooms a range; factor > 1 shows a smaller part. The point at `share` of the range keeps its place. The result is inside `whole`. */
@@ -81,7 +81,7 @@ export function zoomed(shown: Range, share: number, factor: number, whole: Range
   const at = shown.min + share * now;
   const width = Math.min(Math.max(now / factor, Math.min(width_min, full)), full);
   const begin = at - share * width;
-  return moved({ min: begin, max: begin + width }, 0, whole);
+  return moved({min: begin, max: begin + width}, 0, whole);
 }
 
 /** Returns the index of the first number that is >= `at`, or > `at` if `after`. `x` rises. */
@@ -220,8 +220,9 @@ export interface Mark {
 /** Returns the x of each line that represents the visible marks: marks nearer than `distance` to the first one of a line share this line. */
 export function mark_lines(marks: readonly Mark[], shown: Range, distance: number): number[] {
   const lines: number[] = [];
-  for (const { x } of marks) {
-    if (x >= shown.min && x <= shown.max && (lines.length === 0 || x - (lines[lines.length - 1] as number) >= distance)) {
+  for (const {x} of marks) {
+    if (
+      x >= shown.min && x <= shown.max && (lines.length === 0 || x - (lines[lines.length - 1] as number) >= distance)) {
       lines.push(x);
     }
   }
@@ -237,20 +238,21 @@ export interface Box {
 
 /** Returns the upper left corner of a note of this size beside a box: on its left side, or else where there is room: on the right, above or
  *  below. y: the height at which the note is centred. */
-export function note_place(box: Box, size: { width: number; height: number }, y: number,
-                           window: { width: number; height: number }): { left: number; top: number } {
+export function note_place(
+  box: Box, size: {width: number; height: number}, y: number,
+  window: {width: number; height: number}): {left: number; top: number} {
   const gap = 4;
   const clamp = (number: number, most: number) => Math.min(Math.max(number, 0), Math.max(most, 0));
   const beside = clamp(y - size.height / 2, window.height - size.height);
   if (box.left - gap >= size.width) {
-    return { left: box.left - gap - size.width, top: beside };
+    return {left: box.left - gap - size.width, top: beside};
   }
   if (window.width - box.right - gap >= size.width) {
-    return { left: box.right + gap, top: beside };
+    return {left: box.right + gap, top: beside};
   }
   const left = clamp(box.left, window.width - size.width);
   if (box.top - gap >= size.height) {
-    return { left, top: box.top - gap - size.height };
+    return {left, top: box.top - gap - size.height};
   }
-  return { left, top: clamp(box.bottom + gap, window.height - size.height) };
+  return {left, top: clamp(box.bottom + gap, window.height - size.height)};
 }

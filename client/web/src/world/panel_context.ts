@@ -1,19 +1,19 @@
 // Panel: one tab of the docked column. Each panel builds its elements once and updates them in refresh().
-import type { Server } from "../page/server";
-import type { ViewedWorld } from "../page/world";
+import type {Server} from "./server";
+import type {ViewedWorld} from "./world";
 
 export interface PanelContext {
   readonly server: Server;
   /** The world of the pane with the focus. */
   world(): ViewedWorld;
   /** The world of the other pane if two are shown side by side. */
-  other(): ViewedWorld | null;
+  other(): ViewedWorld|null;
   /** Shows a second world beside the first, and focuses it. */
   show_beside(world: string, island?: number): void;
   /** Creates a world that starts from the shown moment, and shows it beside its origin. */
   fork(name?: string): Promise<void>;
   /** Opens a panel by its name, with a subject: open("glass box", {generation: 3, organism: 7}). */
-  open(panel: string, subject?: { [key: string]: unknown }): void;
+  open(panel: string, subject?: {[key: string]: unknown}): void;
   /** Shows a short message at the bottom, read by screen readers. */
   notify(text: string): void;
   /** Runs a request, and shows the sentence of a refusal. Returns whether it succeeded. */
@@ -27,5 +27,5 @@ export interface Panel {
   /** Called after each change while the panel is visible, and when it becomes visible. */
   refresh(): void;
   /** Called by PanelContext.open(). */
-  show?(subject: { [key: string]: unknown }): void;
+  show?(subject: {[key: string]: unknown}): void;
 }

@@ -1,7 +1,7 @@
 // Numbers and durations as text, in the format of all programs of evod.
 
 /** 1234567 → "1,234,567". */
-export function with_separators(number: number | bigint | string): string {
+export function with_separators(number: number|bigint|string): string {
   const text = String(typeof number === "number" ? (Number.isInteger(number) ? number : Math.round(number)) : number);
   return separated(text);
 }
@@ -61,17 +61,16 @@ export function duration(seconds: number): string {
   }
   const whole = Math.round(seconds);
   const two = (value: number): string => String(value).padStart(2, "0");
-  return whole < 3600
-    ? `${Math.floor(whole / 60)}:${two(whole % 60)} min`
-    : `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)} h`;
+  return whole < 3600 ? `${Math.floor(whole / 60)}:${two(whole % 60)} min` :
+                        `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)} h`;
 }
 
 /** Reads a whole number from a field. Returns the number, or a sentence that says what is allowed. */
-export function number_in(field: string, text: string, least: number, most: number): number | string {
+export function number_in(field: string, text: string, least: number, most: number): number|string {
   const number = /^\d+$/.test(text.trim()) ? Number(text) : NaN;
-  return number >= least && number <= most
-    ? number
-    : `${field}: got "${text}", allowed whole numbers from ${with_separators(least)} to ${with_separators(most)}`;
+  return number >= least && number <= most ?
+    number :
+    `${field}: got "${text}", allowed whole numbers from ${with_separators(least)} to ${with_separators(most)}`;
 }
 
 /** At most this many significant digits, without separators or trailing zeros: "0.15", "1e-7", "1250". */

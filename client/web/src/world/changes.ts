@@ -5,7 +5,11 @@ export class Changes {
   #scheduled = false;
 
   /** per_frame: listeners wait for the next animation frame; a hidden page has none, so they then wait until it is shown. */
-  constructor(private readonly per_frame: boolean) {}
+  readonly #per_frame: boolean;
+
+  constructor(per_frame: boolean) {
+    this.#per_frame = per_frame;
+  }
 
   listen(listener: () => void): () => void {
     this.#listeners.add(listener);
@@ -23,7 +27,7 @@ export class Changes {
         listener();
       }
     };
-    if (this.per_frame) {
+    if (this.#per_frame) {
       requestAnimationFrame(call);
     } else {
       queueMicrotask(call);

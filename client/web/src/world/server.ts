@@ -2,15 +2,18 @@
 //
 // Every request goes through respond(), whose answers and events keep `worlds` up to date. The page opens watching: until
 // the user takes part, may() allows only requests that change nothing for others.
-import { Changes } from "./changes";
-import { of_tab } from "./storage";
-import { refusal_text } from "./texts";
-import type { ConnectionState, FromWorker, Message, RequestRules, ToWorker } from "../messages";
+import {refusal_text} from "../texts/texts";
+
+import {Changes} from "./changes";
+import {of_tab} from "./storage";
+
+import type {ConnectionState, FromWorker, Message, RequestRules, ToWorker} from "../core/messages";
 
 /** A refusal of the server. `violations` name the wrong fields. */
 export class Refusal extends Error {
-  constructor(message: string, readonly code: string, readonly reason: string,
-              readonly violations: { field: string; allowed: string; got: string }[]) {
+  constructor(message: string, readonly code: string, readonly reason: string, readonly violations: {
+    field: string; allowed: string; got: string
+  }[]) {
     super(message);
   }
 }
@@ -20,10 +23,12 @@ const changing_kinds = new Set(["REQUEST_KIND_COMMAND", "REQUEST_KIND_LEASE", "R
 
 const own_event_ms = 3000;
 
-type Waiting = { kind: string; fields: Message; resolve: (response: Message) => void; reject: (error: Refusal) => void };
+type Waiting = {
+  kind: string; fields: Message; resolve: (response: Message) => void; reject: (error: Refusal) => void
+};
 
 export class Server {
-  state: ConnectionState = { phase: "connecting", message: "", code: "", welcome: null };
+  state: ConnectionState = {phase: "connecting", message: "", code: "", welcome: null};
   /** The registry: ParameterDescription messages, in order. Empty until the session is open. */
   parameters: Message[] = [];
   limits: Message = {};
@@ -35,7 +40,7 @@ export class Server {
   worlds_known = false;
   features: ReadonlySet<string> = new Set();
   /** Storage message: whether the server can write runs. null: it stores none. */
-  storage: Message | null = null;
+  storage: Message|null = null;
   /** The server said that it is shutting down. */
   going_away = false;
   /** The server that answered after a reconnect has another version than the one that served this page. */
@@ -56,14 +61,19 @@ export class Server {
   #taking_part = of_tab.get("take_part") === "yes";
 
   /** descriptor: the serialised FileDescriptorSet of the protocol. */
-  constructor(worker: Worker, private readonly descriptor: ArrayBuffer, private readonly url: string) {
+  readonly #descriptor: ArrayBuffer;
+  readonly #url: string;
+
+  constructor(worker: Worker, descriptor: ArrayBuffer, url: string) {
+    this.#descriptor = descriptor;
+    this.#url = url;
     this.#worker = worker;
     worker.addEventListener("message", (event: MessageEvent<FromWorker>) => this.#take(event.data));
   }
 
   connect(token: string): void {
-    this.state = { phase: "connecting", message: "", code: "", welcome: this.state.welcome };
-    this.post({ kind: "connect", url: this.url, token, descriptor: this.descriptor.slice(0) });
+    this.state = {phase: "connecting", message: "", code: "", welcome: this.state.welcome};
+    this.post({kind: "connect", url: this.#url, token, descriptor: this.#descriptor.slice(0)});
     this.#changes.notify();
   }
 
@@ -125,11 +135,13 @@ export class Server {
       return "";
     }
     if (this.#roles.indexOf(this.role) < this.#roles.indexOf(rule.role)) {
-      return rule.role === "ROLE_ADMIN" && this.role !== "ROLE_VIEWER"
-        ? "Only the role admin may create and delete worlds."
-        : "You are connected as a viewer: read-only.";
+      return rule.role === "ROLE_ADMIN" && this.role !== "ROLE_VIEWER" ?
+        "Only the role admin may create and delete worlds." :
+        "You are connected as a viewer: read-only.";
     }
-    return changing_kinds.has(rule.kind) && !this.taking_part ? "You are watching. Turn on “Take part” to change worlds." : "";
+    return changing_kinds.has(rule.kind) && !this.taking_part ?
+      "You are watching. Turn on “Take part” to change worlds." :
+      "";
   }
 
   /** Whether this page has sent such a command to the world within the last own_event_ms: an event about it is then no news. */
@@ -141,7 +153,7 @@ export class Server {
     return this.#replays.has(world);
   }
 
-  world(name: string): Message | null {
+  world(name: string): Message|null {
     return this.worlds.find((world) => world.name === name) ?? null;
   }
 
@@ -152,7 +164,9 @@ export class Server {
 
   /** The names of all worlds except replays, damaged ones too, in alphabetical order. */
   get world_names(): string[] {
-    return [...this.worlds.filter((world) => !world.replay), ...this.damaged].map((world) => world.name as string).sort();
+    return [...this.worlds.filter((world) => !world.replay), ...this.damaged]
+      .map((world) => world.name as string)
+      .sort();
   }
 
   /** Sends {[kind]: fields}. Resolves with the answer inside the Response. Rejects with Refusal. */
@@ -165,22 +179,22 @@ export class Server {
   respond(kind: string, fields: Message): Promise<Message> {
     return new Promise((resolve, reject) => {
       const id = ++this.#last_id;
-      this.#waiting.set(id, { kind, fields, resolve, reject });
+      this.#waiting.set(id, {kind, fields, resolve, reject});
       if (changing_kinds.has(this.#rules.get(kind)?.kind ?? "")) {
         this.#sent_ms.set(`${kind} ${fields.world ?? fields.name}`, performance.now());
       }
-      this.post({ kind: "request", id, request: { [kind]: fields } });
+      this.post({kind: "request", id, request: {[kind]: fields}});
     });
   }
 
   /** For tests and benchmarks: figures of the worker. */
   figures(): Promise<Message> {
-    return this.#ask((id) => ({ kind: "ask_figures", id }));
+    return this.#ask((id) => ({kind: "ask_figures", id}));
   }
 
   /** For tests: the entities of the newest snapshot in a pane; null if there is none. */
-  columns(pane: number): Promise<Message | null> {
-    return this.#ask((id) => ({ kind: "ask_columns", pane, id }));
+  columns(pane: number): Promise<Message|null> {
+    return this.#ask((id) => ({kind: "ask_columns", pane, id}));
   }
 
   #ask<Answer>(message_of: (id: number) => ToWorker): Promise<Answer> {
@@ -225,7 +239,7 @@ export class Server {
         for (const event of message.events) {
           this.#take_event(event);
         }
-        this.post({ kind: "events_taken" });
+        this.post({kind: "events_taken"});
         break;
     }
     for (const listener of [...this.#message_listeners]) {
@@ -276,7 +290,10 @@ export class Server {
   async #list_worlds(): Promise<void> {
     const list = await this.request("list_worlds", {});
     const replays = this.worlds.filter((world) => this.#replays.has(world.name));
-    this.worlds = [...(list.worlds ?? []), ...replays.filter((replay) => !(list.worlds ?? []).some((world: Message) => world.name === replay.name))];
+    this.worlds = [
+      ...(list.worlds ?? []),
+      ...replays.filter((replay) => !(list.worlds ?? []).some((world: Message) => world.name === replay.name))
+    ];
     this.#sort();
     this.damaged = list.damaged ?? [];
     this.worlds_known = true;
@@ -284,10 +301,12 @@ export class Server {
   }
 
   #take_response(waiting: Waiting, response: Message): void {
-    const status: Message | undefined = response.status;
+    const status: Message|undefined = response.status;
     if (status) {
-      waiting.reject(new Refusal(refusal_text(status), status.code ?? "", status.reason ?? "",
-        (status.violations ?? []).map((one: Message) => ({ field: one.field ?? "", allowed: one.allowed ?? "", got: one.got ?? "" }))));
+      waiting.reject(new Refusal(
+        refusal_text(status), status.code ?? "", status.reason ?? "",
+        (status.violations ?? [])
+          .map((one: Message) => ({field: one.field ?? "", allowed: one.allowed ?? "", got: one.got ?? ""}))));
       return;
     }
     if (waiting.kind === "open_replay" && response.world) {
@@ -305,24 +324,27 @@ export class Server {
   }
 
   #take_event(event: Message): void {
-    const info: Message | undefined = event.run_control_changed?.world ?? event.world_created?.world ?? event.world_reset?.world;
+    const info: Message|undefined =
+      event.run_control_changed?.world ?? event.world_created?.world ?? event.world_reset?.world;
     if (info) {
       this.#put(info);
     } else if (event.world_deleted) {
       this.#remove(event.world ?? "");
     } else if (event.world_damaged) {
       this.#remove(event.world ?? "");
-      this.damaged = [...this.damaged, { name: event.world, run_id: event.run_id, reason: event.world_damaged.reason }].sort((one, other) => (one.name! < other.name! ? -1 : 1));
+      this.damaged = [
+        ...this.damaged, {name: event.world, run_id: event.run_id, reason: event.world_damaged.reason}
+      ].sort((one, other) => (one.name! < other.name!? -1 : 1));
       this.#changes.notify();
     } else if (event.run_terminated) {
-      this.#change(event.world, { state: "RUN_STATE_TERMINATED", outcome: event.run_terminated.outcome });
+      this.#change(event.world, {state: "RUN_STATE_TERMINATED", outcome: event.run_terminated.outcome});
     } else if (event.generation_finished) {
       const finished: number = event.generation_finished.statistics?.[0]?.generation ?? 0;
-      this.#change(event.world, { generation: finished + 1, tick: event.tick ?? 0, awaited_fitness: undefined });
+      this.#change(event.world, {generation: finished + 1, tick: event.tick ?? 0, awaited_fitness: undefined});
     } else if (event.fitness_awaited) {
-      this.#change(event.world, { awaited_fitness: event.fitness_awaited });
+      this.#change(event.world, {awaited_fitness: event.fitness_awaited});
     } else if (event.storage_changed && event.world) {
-      this.#change(event.world, { storage: event.storage_changed.storage });
+      this.#change(event.world, {storage: event.storage_changed.storage});
     } else if (event.storage_changed) {
       this.storage = event.storage_changed.storage ?? null;
       this.#changes.notify();
@@ -351,7 +373,7 @@ export class Server {
   #change(name: string, fields: Message): void {
     const known = this.world(name);
     if (known) {
-      this.worlds = this.worlds.map((world) => (world === known ? { ...world, ...fields } : world));
+      this.worlds = this.worlds.map((world) => (world === known ? {...world, ...fields} : world));
       this.#changes.notify();
     }
   }

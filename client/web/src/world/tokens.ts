@@ -10,16 +10,21 @@ export interface TokenStore {
 export class Tokens {
   used = ""; // of the present or the last session; empty: none
   /** The token of a link while another one works. The user decides. */
-  offered: string | null = null;
-  #working: string | null = null; // the last token with which a session began; null: none did, or the server has refused it since
+  offered: string|null = null;
+  #working: string|null =
+    null; // the last token with which a session began; null: none did, or the server has refused it since
 
-  constructor(private readonly store: TokenStore) {}
+  readonly #store: TokenStore;
+
+  constructor(store: TokenStore) {
+    this.#store = store;
+  }
 
   /** Returns the token with which a new page connects.
    *
    *  linked  the token of the address; null: it contains none */
-  begin(linked: string | null): string {
-    const stored = this.store.get("token");
+  begin(linked: string|null): string {
+    const stored = this.#store.get("token");
     if (stored === "" || linked === null || linked === stored) {
       return this.use(linked ?? stored);
     }
@@ -29,7 +34,7 @@ export class Tokens {
   }
 
   /** Takes the token of a link that the user has followed. Returns the token to connect with; null: the session goes on. */
-  follow(linked: string): string | null {
+  follow(linked: string): string|null {
     const works = this.#working === this.used;
     this.offered = works && linked !== this.used ? linked : null;
     return works ? null : this.use(linked);
@@ -39,7 +44,7 @@ export class Tokens {
   use(token: string): string {
     this.used = token;
     this.offered = null;
-    this.store.set("token", token);
+    this.#store.set("token", token);
     return token;
   }
 
@@ -54,7 +59,7 @@ export class Tokens {
   }
 
   /** The server does not accept the token. Returns the token to connect with; null: the user has to enter one. */
-  refused(): string | null {
+  refused(): string|null {
     if (this.#working === this.used) {
       this.#working = null;
     }
@@ -62,7 +67,7 @@ export class Tokens {
     if (other !== null) {
       return this.use(other);
     }
-    this.store.set("token", "");
+    this.#store.set("token", "");
     return null;
   }
 }

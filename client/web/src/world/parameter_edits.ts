@@ -3,9 +3,9 @@
 // All parameters come from the server's registry, so a parameter that is added to the server appears here. Edits are collected and sent as
 // one SetParameters request; the server applies all of them or none. The request contains the revision on which the edits are based. If
 // another client has changed a parameter since, the server rejects the request. Undo sends another SetParameters request.
-import type { Message } from "../messages";
-import { nice_step, rounded, with_separators } from "./numbers";
-import { actor_text } from "./texts";
+import type {Message} from "../core/messages";
+import {nice_step, rounded, with_separators} from "../texts/numbers";
+import {actor_text} from "../texts/texts";
 
 const decades_min = 100; // if max / min is above this ratio, the slider is logarithmic
 const transactions_kept = 100;
@@ -16,13 +16,25 @@ const field_prefix = "set_parameters.";
 
 /** The first parameter of a group, and the title of the group. Groups are in the order of the registry. */
 const topics = new Map([
-  ["fitness", "Experiment"], ["island_count", "Islands"], ["food_count", "Food and poison"], ["obstacle_count", "Obstacles and crates"],
-  ["item_radius_px", "Items"], ["health_loss_per_s", "Health and behaviour"], ["damping", "Physics"],
-  ["radius_per_unit_px", "From genes to bodies"], ["normal_speed_cost", "Costs of genes"], ["population_size", "Population"],
-  ["fitness_scaling", "Selection"], ["crossover", "Crossover"], ["rearranging", "Mutation"], ["initial_gene_min", "Bounds of genes"],
-  ["generation_limit", "End of the run"], ["migration", "Migration"],
+  ["fitness", "Experiment"],
+  ["island_count", "Islands"],
+  ["food_count", "Food and poison"],
+  ["obstacle_count", "Obstacles and crates"],
+  ["item_radius_px", "Items"],
+  ["health_loss_per_s", "Health and behaviour"],
+  ["damping", "Physics"],
+  ["radius_per_unit_px", "From genes to bodies"],
+  ["normal_speed_cost", "Costs of genes"],
+  ["population_size", "Population"],
+  ["fitness_scaling", "Selection"],
+  ["crossover", "Crossover"],
+  ["rearranging", "Mutation"],
+  ["initial_gene_min", "Bounds of genes"],
+  ["generation_limit", "End of the run"],
+  ["migration", "Migration"],
 ]);
-const most_used_names = ["selection", "tournament_size", "mutation_chance", "mutation_step", "population_size", "food_count", "poison_count"];
+const most_used_names =
+  ["selection", "tournament_size", "mutation_chance", "mutation_step", "population_size", "food_count", "poison_count"];
 
 export interface ParameterGroup {
   title: string;
@@ -31,8 +43,9 @@ export interface ParameterGroup {
 
 /** Returns the parameters that users change most often, in the order in which they are shown. */
 export function most_used(registry: readonly Message[]): ParameterGroup {
-  const members = most_used_names.map((name) => registry.findIndex((one) => one.name === name)).filter((index) => index >= 0);
-  return { title: "Most used", members };
+  const members =
+    most_used_names.map((name) => registry.findIndex((one) => one.name === name)).filter((index) => index >= 0);
+  return {title: "Most used", members};
 }
 
 /** Groups the registry by topic, in its order. A parameter that the page does not know belongs to the topic of the one before it. */
@@ -41,7 +54,7 @@ export function grouped(registry: readonly Message[]): ParameterGroup[] {
   registry.forEach((about, i) => {
     const title = topics.get(about.name);
     if (title !== undefined || groups.length === 0) {
-      groups.push({ title: title ?? "General", members: [] });
+      groups.push({title: title ?? "General", members: []});
     }
     groups[groups.length - 1]!.members.push(i);
   });
@@ -55,7 +68,9 @@ function plain(text: string): string {
 /** Returns whether the parameter or the title of its group contains every word of `search`: in the name, the unit, the help, the choices or
  *  their help. Case is ignored; _ counts as a space. */
 export function matches(about: Message, group: string, search: string): boolean {
-  const all = plain([about.name, about.unit ?? "", about.help ?? "", group, ...(about.choices ?? []), ...(about.choice_help ?? [])].join(" "));
+  const all = plain([
+    about.name, about.unit ?? "", about.help ?? "", group, ...(about.choices ?? []), ...(about.choice_help ?? [])
+  ].join(" "));
   return plain(search).split(" ").every((word) => all.includes(word));
 }
 
@@ -129,12 +144,13 @@ export function number_of(value: ParameterValue): number {
 
 /** Converts a number to a real or a count. A count is rounded and limited to 32 bits. The server rejects a value out of range. */
 export function value_of(about: Message, number: number): ParameterValue {
-  return about.kind === "PARAMETER_KIND_COUNT" ? { count: Math.min(Math.max(Math.round(number), 0), 0xffffffff) } : { real: number };
+  return about.kind === "PARAMETER_KIND_COUNT" ? {count: Math.min(Math.max(Math.round(number), 0), 0xffffffff)} :
+                                                 {real: number};
 }
 
 /** Reads a number that a user has typed; null if it is none. In a real, a comma may stand for the point; in a count, commas may separate
  *  thousands, as value_text() prints them. */
-export function typed_number(about: Message, text: string): number | null {
+export function typed_number(about: Message, text: string): number|null {
   const clean = text.trim().replace("−", "-");
   if (about.kind === "PARAMETER_KIND_COUNT") {
     const number = /^(\d+|\d{1,3}(,\d{3})+)$/.test(clean) ? Number(clean.replace(/,/g, "")) : NaN;
@@ -233,14 +249,16 @@ export interface RefusalFacts {
 }
 
 /** When a change is made: at once, before the first tick of a generation, or right after a tick of the run. */
-export type When = { generation: number } | { tick: number } | null;
+export type When = {
+  generation: number
+}|{tick: number}|null;
 
 interface State {
   value: ParameterValue;
-  pending: ParameterValue | null;
-  edit: ParameterValue | null;
+  pending: ParameterValue|null;
+  edit: ParameterValue|null;
   client_of_last_change: string;
-  violation: Violation | null;
+  violation: Violation|null;
 }
 interface Change {
   parameter: number;
@@ -248,7 +266,7 @@ interface Change {
   after: ParameterValue;
 }
 interface Transaction {
-  kind: "apply" | "plan" | "undo" | "redo";
+  kind: "apply"|"plan"|"undo"|"redo";
   changes: Change[];
 }
 
@@ -262,7 +280,7 @@ export class ParameterEdits {
   schedule: Message[] = [];
   #index = new Map<string, number>();
   #states: State[] = [];
-  #sent: Transaction | null = null;
+  #sent: Transaction|null = null;
   #done: Change[][] = []; // newest last
   #undone: Change[][] = [];
   #edit_number = 0; // counts the changes of edits
@@ -278,8 +296,9 @@ export class ParameterEdits {
 
   /** Clears everything except the registry. Call when another world or run is shown. */
   forget(): void {
-    this.#states = this.registry.map((about) => (
-      { value: about.default_value ?? {}, pending: null, edit: null, client_of_last_change: "", violation: null }));
+    this.#states = this.registry.map(
+      (about) =>
+        ({value: about.default_value ?? {}, pending: null, edit: null, client_of_last_change: "", violation: null}));
     this.revision = 0;
     this.planned = [];
     this.schedule = [];
@@ -373,7 +392,7 @@ export class ParameterEdits {
   }
 
   /** Returns why the server rejected the value that was sent last; null if it accepted it. */
-  violation(i: number): Violation | null {
+  violation(i: number): Violation|null {
     return this.#states[i]!.violation;
   }
 
@@ -381,9 +400,12 @@ export class ParameterEdits {
   planned_values(i: number): string[] {
     const name: string = this.registry[i]!.name;
     return [
-      ...this.schedule.filter((one) => one.name === name).map((one) => `${value_text(one.value ?? {})} in generation ${with_separators(one.generation ?? 0)}`),
-      ...this.planned.flatMap((change) => (change.parameters as Message[] ?? []).filter((one) => one.name === name)
-        .map((one) => `${value_text(one.value ?? {})} ${when_text(change)}`)),
+      ...this.schedule.filter((one) => one.name === name)
+        .map((one) => `${value_text(one.value ?? {})} in generation ${with_separators(one.generation ?? 0)}`),
+      ...this.planned.flatMap(
+        (change) => (change.parameters as Message[] ?? [])
+                      .filter((one) => one.name === name)
+                      .map((one) => `${value_text(one.value ?? {})} ${when_text(change)}`)),
     ];
   }
 
@@ -424,14 +446,15 @@ export class ParameterEdits {
   // ---- checks: the server checks the edits while the user makes them, and changes nothing ----
 
   /** Returns a dry run of the edits, and its number for checked(); null if there is no edit or a transaction is pending. */
-  check(world: string, when: When): { fields: Message; number: number } | null {
+  check(world: string, when: When): {fields: Message; number: number}|null {
     const changes = this.#edits();
-    return this.busy || changes.length === 0 ? null
-      : { fields: { ...this.#fields(world, changes), ...when_fields(when), dry_run: true }, number: this.#edit_number };
+    return this.busy || changes.length === 0 ?
+      null :
+      {fields: {...this.#fields(world, changes), ...when_fields(when), dry_run: true}, number: this.#edit_number};
   }
 
   /** Stores the violations of a dry run unless the edits have changed since. refusal: null if the server accepted it. */
-  checked(number: number, refusal: RefusalFacts | null): void {
+  checked(number: number, refusal: RefusalFacts|null): void {
     if (number === this.#edit_number && !this.busy) {
       for (const state of this.#states) {
         state.violation = null;
@@ -455,24 +478,25 @@ export class ParameterEdits {
   }
 
   /** Returns the fields of the SetParameters that sends all edits; null if there is no edit or a transaction is pending. */
-  apply(world: string, when: When = null): Message | null {
+  apply(world: string, when: When = null): Message|null {
     const changes = this.#edits();
-    return this.busy || changes.length === 0 ? null
-      : { ...this.#send(world, when === null ? "apply" : "plan", changes), ...when_fields(when) };
+    return this.busy || changes.length === 0 ?
+      null :
+      {...this.#send(world, when === null ? "apply" : "plan", changes), ...when_fields(when)};
   }
 
   /** Restores the values before the last transaction that was not undone, except values that other clients have changed since. */
-  undo(world: string): Message | null {
+  undo(world: string): Message|null {
     return this.#send_reversed(world, "undo", this.#done);
   }
 
-  redo(world: string): Message | null {
+  redo(world: string): Message|null {
     return this.#send_reversed(world, "redo", this.#undone);
   }
 
   /** Takes the answer to the pending transaction: the new ParameterSet or null, or the refusal, or the error that no answer arrived. Returns
    *  whether the caller must request the complete set. */
-  answered(answer: { set: Message | null } | { refusal: RefusalFacts } | { lost: true }): boolean {
+  answered(answer: {set: Message|null}|{refusal: RefusalFacts}|{lost: true}): boolean {
     const sent = this.#sent;
     if (sent === null) {
       return false;
@@ -491,31 +515,37 @@ export class ParameterEdits {
     } else {
       this.problem = "No answer arrived: the change may or may not have been applied";
     }
-    if (sent.kind === "undo" || sent.kind === "redo") { // keep the transaction, so that the user can undo or redo it again
+    if (
+      sent.kind === "undo" ||
+      sent.kind === "redo") { // keep the transaction, so that the user can undo or redo it again
       (sent.kind === "undo" ? this.#done : this.#undone).push(reversed(sent.changes));
     }
     return true;
   }
 
   #edits(): Change[] {
-    return this.#states.flatMap((state, parameter) => (state.edit === null ? [] : [{ parameter, before: this.requested_value(parameter), after: state.edit }]));
+    return this.#states.flatMap(
+      (state, parameter) =>
+        (state.edit === null ? [] : [{parameter, before: this.requested_value(parameter), after: state.edit}]));
   }
 
   #fields(world: string, changes: readonly Change[]): Message {
     return {
-      world, expected_revision: this.revision,
-      parameters: changes.map(({ parameter, after }) => ({ name: this.registry[parameter]!.name, value: after })),
+      world,
+      expected_revision: this.revision,
+      parameters: changes.map(({parameter, after}) => ({name: this.registry[parameter]!.name, value: after})),
     };
   }
 
   #send(world: string, kind: Transaction["kind"], changes: Change[]): Message {
-    this.#sent = { kind, changes };
+    this.#sent = {kind, changes};
     return this.#fields(world, changes);
   }
 
-  #send_reversed(world: string, kind: "undo" | "redo", from: Change[][]): Message | null {
+  #send_reversed(world: string, kind: "undo"|"redo", from: Change[][]): Message|null {
     while (!this.busy && from.length > 0) {
-      const changes = reversed(from.pop()!.filter(({ parameter, after }) => same(this.requested_value(parameter), after)));
+      const changes =
+        reversed(from.pop()!.filter(({parameter, after}) => same(this.requested_value(parameter), after)));
       if (changes.length > 0) {
         return this.#send(world, kind, changes);
       } // other clients have changed all these values since
@@ -523,8 +553,8 @@ export class ParameterEdits {
     return null;
   }
 
-  #take_acceptance({ kind, changes }: Transaction): void {
-    for (const { parameter, after } of changes) {
+  #take_acceptance({kind, changes}: Transaction): void {
+    for (const {parameter, after} of changes) {
       const state = this.#states[parameter]!;
       state.client_of_last_change = "";
       if (state.edit && same(state.edit, after)) {
@@ -560,9 +590,9 @@ export class ParameterEdits {
   #take_refusal(refusal: RefusalFacts): void {
     const marked = this.#mark(refusal.violations);
     const is_stale = refusal.violations.some((violation) => field_name(violation) === "expected_revision");
-    this.problem = marked ? "Nothing was changed: see the marked parameters"
-      : is_stale ? "Another client changed parameters at the same time: check the values and apply again"
-      : refusal.message;
+    this.problem = marked ? "Nothing was changed: see the marked parameters" :
+      is_stale            ? "Another client changed parameters at the same time: check the values and apply again" :
+                            refusal.message;
   }
 }
 
@@ -571,14 +601,15 @@ function field_name(violation: Violation): string {
 }
 
 function reversed(changes: readonly Change[]): Change[] {
-  return changes.map(({ parameter, before, after }) => ({ parameter, before: after, after: before }));
+  return changes.map(({parameter, before, after}) => ({parameter, before: after, after: before}));
 }
 
 function when_fields(when: When): Message {
-  return when === null ? {} : "generation" in when ? { at_generation: when.generation } : { at_tick: when.tick };
+  return when === null ? {} : "generation" in when ? {at_generation: when.generation} : {at_tick: when.tick};
 }
 
 /** Returns when a PlannedChange is due: "in generation 30", "after tick 1,200". */
 export function when_text(change: Message): string {
-  return change.tick !== undefined ? `after tick ${with_separators(change.tick)}` : `in generation ${with_separators(change.generation ?? 0)}`;
+  return change.tick !== undefined ? `after tick ${with_separators(change.tick)}` :
+                                     `in generation ${with_separators(change.generation ?? 0)}`;
 }

@@ -1,10 +1,10 @@
 // Notices: short messages at the bottom that disappear by themselves, and banners at the top that stay while something is wrong.
-import { h, set_text } from "./dom";
+import {h, set_text} from "./dom";
 
 const shown_ms = 6000, notices_max = 3;
 
 export class Notices {
-  readonly element = h("div", { class: "notices", role: "status", "aria-live": "polite" });
+  readonly element = h("div", {class: "notices", role: "status", "aria-live": "polite"});
 
   /** Shows a message. The same message is not shown twice at a time. */
   show(text: string): void {
@@ -13,8 +13,11 @@ export class Notices {
         notice.remove();
       }
     }
-    const notice = h("div", { class: "notice" }, h("span", {}, text));
-    notice.append(h("button", { type: "button", class: "button button-quiet", "aria-label": "Close the message", onclick: () => notice.remove() }, "✕"));
+    const notice = h("div", {class: "notice"}, h("span", {}, text));
+    notice.append(h(
+      "button",
+      {type: "button", class: "button button-quiet", "aria-label": "Close the message", onclick: () => notice.remove()},
+      "✕"));
     this.element.append(notice);
     while (this.element.children.length > notices_max) {
       this.element.firstElementChild!.remove();
@@ -30,13 +33,13 @@ export class Notices {
 
 export interface Banner {
   name: string; // "lost"
-  kind: "bad" | "warn";
+  kind: "bad"|"warn";
   text: string;
-  actions?: { label: string; act: () => void }[];
+  actions?: {label: string; act: () => void}[];
 }
 
 export class Banners {
-  readonly element = h("div", { class: "banners", role: "status", "aria-live": "polite" });
+  readonly element = h("div", {class: "banners", role: "status", "aria-live": "polite"});
   #shown = new Map<string, HTMLElement>();
 
   /** Shows exactly these banners. */
@@ -50,8 +53,10 @@ export class Banners {
     for (const banner of banners) {
       let element = this.#shown.get(banner.name);
       if (!element) {
-        element = h("div", { class: "banner", "data-kind": banner.kind }, h("span", {}),
-          ...(banner.actions ?? []).map(({ label, act }) => h("button", { type: "button", class: "button", onclick: act }, label)));
+        element =
+          h("div", {class: "banner", "data-kind": banner.kind}, h("span", {}),
+            ...(banner.actions ?? [])
+              .map(({label, act}) => h("button", {type: "button", class: "button", onclick: act}, label)));
         this.#shown.set(banner.name, element);
         this.element.append(element);
       }

@@ -1,29 +1,36 @@
 // OtherHistory: the history of a world that no pane shows, for a comparison. It follows the world while it runs.
-import { marks_of } from "./change_text";
-import { HistoryTable } from "./history_table";
-import type { Mark } from "./plot_layout";
-import type { Server } from "./server";
-import type { Message } from "../messages";
+import {marks_of} from "./change_marks";
+
+import {HistoryTable} from "./history_table";
+
+import type {Mark} from "./plot_layout";
+import type {Server} from "../world/server";
+import type {Message} from "../core/messages";
 
 const missed_wait_ms = 1000; // after the server has dropped events
 
 export class OtherHistory {
   readonly table = new HistoryTable();
-  changes: (Mark & { label?: string })[] = [];
+  changes: (Mark&{label?: string})[] = [];
   problem = ""; // why the history is not complete
   #end: () => void;
   #timer = 0;
   #number = 0; // of the last reading
-  #newer: Message[] | null = null; // statistics that arrived while the history is read; null: it is not being read
+  #newer: Message[]|null = null; // statistics that arrived while the history is read; null: it is not being read
 
   /** on_change: called after each change. */
-  constructor(private readonly server: Server, readonly world: string, private readonly on_change: () => void) {
+  readonly #server: Server;
+  readonly #on_change: () => void;
+
+  constructor(server: Server, readonly world: string, on_change: () => void) {
+    this.#server = server;
+    this.#on_change = on_change;
     this.#end = server.on_event((event) => this.#take(event));
     void this.#read();
   }
 
   get gene_names(): string[] {
-    return this.server.world(this.world)?.gene_names ?? [];
+    return this.#server.world(this.world)?.gene_names ?? [];
   }
 
   close(): void {
@@ -41,8 +48,8 @@ export class OtherHistory {
       const statistics: Message[] = event.generation_finished.statistics ?? [];
       this.#newer?.push(...statistics);
       this.table.add(statistics);
-      this.table.limit(this.server.limits.history_generations_kept ?? 10000);
-      this.on_change();
+      this.table.limit(this.#server.limits.history_generations_kept ?? 10000);
+      this.#on_change();
     }
   }
 
@@ -59,11 +66,12 @@ export class OtherHistory {
   async #read(): Promise<void> {
     const number = ++this.#number;
     const generations: Message[] = [], changes: Message[] = [];
-    let next: number | undefined;
+    let next: number|undefined;
     this.#newer = [];
     try {
       do {
-        const page: Message = await this.server.request("get_history", { world: this.world, ...(next === undefined ? {} : { first_generation: next }) });
+        const page: Message = await this.#server.request(
+          "get_history", {world: this.world, ...(next === undefined ? {} : {first_generation: next})});
         if (number !== this.#number) {
           return;
         }
@@ -81,6 +89,6 @@ export class OtherHistory {
         this.problem = (error as Error).message;
       }
     }
-    this.on_change();
+    this.#on_change();
   }
 }

@@ -1,10 +1,10 @@
 // icon: the icon of the page: an organism with its arc of health, drawn here so that it needs no file.
-import { h } from "./dom";
+import {h} from "./dom";
 
 const side = 64;
 
 export function show_icon(): void {
-  const canvas = h("canvas", { width: side, height: side }), context = canvas.getContext("2d");
+  const canvas = h("canvas", {width: side, height: side}), context = canvas.getContext("2d");
   if (!context) {
     return;
   }
@@ -24,5 +24,5 @@ export function show_icon(): void {
   context.stroke();
   // At once, before the browser asks for /favicon.ico: toBlob() would be too late.
   const png = Uint8Array.from(atob(canvas.toDataURL().split(",")[1] ?? ""), (letter) => letter.charCodeAt(0));
-  document.head.append(h("link", { rel: "icon", href: URL.createObjectURL(new Blob([png], { type: "image/png" })) }));
+  document.head.append(h("link", {rel: "icon", href: URL.createObjectURL(new Blob([png], {type: "image/png"}))}));
 }

@@ -1,7 +1,7 @@
 // texts: sentences about worlds, in the words of the other programs of evod.
-import { duration, shown_number, with_separators } from "./numbers";
-import type { Message } from "../messages";
-import type { SnapshotInfo } from "../core/snapshot";
+import {duration, shown_number, with_separators} from "./numbers";
+import type {Message} from "../core/messages";
+import type {SnapshotInfo} from "../core/snapshot";
 
 export function capitalised(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
@@ -17,7 +17,7 @@ export function refusal_text(status: Message): string {
   const violations: Message[] = status.violations ?? [];
   const message: string = status.message ?? "";
   if (violations.length === 1) {
-    const { field = "", got = "", allowed = "" } = violations[0]!;
+    const {field = "", got = "", allowed = ""} = violations[0]!;
     if (field && message.startsWith(field)) { // the message says what is allowed
       return capitalised(last_field_name(field) + message.slice(field.length));
     }
@@ -26,12 +26,16 @@ export function refusal_text(status: Message): string {
     }
     return `${capitalised(message)}${got ? ` (${got})` : ""}; allowed: ${allowed}`;
   }
-  return capitalised(message) + violations.map(({ field = "", got = "", allowed = "" }, i) =>
-    `${i === 0 ? ": " : "; "}${last_field_name(field)} must be ${allowed}${got ? `, not ${got}` : ""}`).join("");
+  return capitalised(message) +
+    violations
+      .map(
+        ({field = "", got = "", allowed = ""}, i) =>
+          `${i === 0 ? ": " : "; "}${last_field_name(field)} must be ${allowed}${got ? `, not ${got}` : ""}`)
+      .join("");
 }
 
 /** "2×", "1/8×", "max". */
-export function speed_text(speed: Message | undefined): string {
+export function speed_text(speed: Message|undefined): string {
   if (speed?.max) {
     return "max";
   }
@@ -41,64 +45,87 @@ export function speed_text(speed: Message | undefined): string {
 }
 
 /** Why commands are refused or worlds wait; empty if the server can write its runs. */
-export function storage_text(storage: Message | null | undefined): string {
+export function storage_text(storage: Message|null|undefined): string {
   const reason: string = storage?.reason ?? "";
   switch (storage?.state) {
-    case "STORAGE_STATE_FAILING": return "Commands are refused: " + reason;
-    case "STORAGE_STATE_STALLED": return "Worlds wait for the disk, commands are refused: " + reason;
-    case "STORAGE_STATE_BEHIND": return "Worlds wait for the disk: " + reason;
-    default: return "";
+    case "STORAGE_STATE_FAILING":
+      return "Commands are refused: " + reason;
+    case "STORAGE_STATE_STALLED":
+      return "Worlds wait for the disk, commands are refused: " + reason;
+    case "STORAGE_STATE_BEHIND":
+      return "Worlds wait for the disk: " + reason;
+    default:
+      return "";
   }
 }
 
-export function state_word(state: string, storage?: Message | null, awaits_fitness = false): string {
+export function state_word(state: string, storage?: Message|null, awaits_fitness = false): string {
   switch (state) {
-    case "RUN_STATE_WAITING": return "waiting";
+    case "RUN_STATE_WAITING":
+      return "waiting";
     case "RUN_STATE_RUNNING":
-      return storage?.state === "STORAGE_STATE_STALLED" || storage?.state === "STORAGE_STATE_BEHIND" ? "waits for the disk"
-        : awaits_fitness ? "waits for fitness" : "running";
-    case "RUN_STATE_PAUSED": return "paused";
-    case "RUN_STATE_TERMINATED": return "ended";
-    default: return "…";
+      return storage?.state === "STORAGE_STATE_STALLED" || storage?.state === "STORAGE_STATE_BEHIND" ?
+        "waits for the disk" :
+        awaits_fitness ? "waits for fitness" :
+                         "running";
+    case "RUN_STATE_PAUSED":
+      return "paused";
+    case "RUN_STATE_TERMINATED":
+      return "ended";
+    default:
+      return "…";
   }
 }
 
-export function outcome_words(outcome: string | undefined): string {
+export function outcome_words(outcome: string|undefined): string {
   switch (outcome) {
-    case "OUTCOME_GENERATION_LIMIT": return "generation limit reached";
-    case "OUTCOME_TARGET_FITNESS": return "target fitness reached";
-    case "OUTCOME_STAGNATION": return "fitness has stagnated";
-    case "OUTCOME_EXTINCTION": return "all organisms have died";
-    default: return "a termination criterion is met";
+    case "OUTCOME_GENERATION_LIMIT":
+      return "generation limit reached";
+    case "OUTCOME_TARGET_FITNESS":
+      return "target fitness reached";
+    case "OUTCOME_STAGNATION":
+      return "fitness has stagnated";
+    case "OUTCOME_EXTINCTION":
+      return "all organisms have died";
+    default:
+      return "a termination criterion is met";
   }
 }
 
 /** "default · island 1 of 0–3 · 2× (120 ticks/s)". */
-export function place_and_speed_text(name: string, snapshot: SnapshotInfo, speed: Message | undefined, running: boolean): string {
+export function place_and_speed_text(
+  name: string, snapshot: SnapshotInfo, speed: Message|undefined, running: boolean): string {
   return name + (snapshot.island_count > 1 ? ` · island ${snapshot.island} of 0–${snapshot.island_count - 1}` : "") +
-    ` · ${speed_text(speed)}` + (running && snapshot.ticks_per_s > 0 ? ` (${with_separators(snapshot.ticks_per_s)} ticks/s)` : "");
+    ` · ${speed_text(speed)}` +
+    (running && snapshot.ticks_per_s > 0 ? ` (${with_separators(snapshot.ticks_per_s)} ticks/s)` : "");
 }
 
 /** "alive 50 of 50", "mean health 131.3", … */
 export function statistics_texts(snapshot: SnapshotInfo): string[] {
   const live = snapshot.live;
   return [
-    ...(live ? [
-      `alive ${with_separators(live.alive_count ?? 0)} of ${with_separators(live.organism_count ?? 0)}`,
-      `mean health ${(live.health_mean ?? 0).toFixed(1)}`,
-      `food eaten ${with_separators(live.food_eaten ?? 0)}`,
-      `poison eaten ${with_separators(live.poison_eaten ?? 0)}`,
-    ] : []),
+    ...(
+      live ?
+        [
+          `alive ${with_separators(live.alive_count ?? 0)} of ${with_separators(live.organism_count ?? 0)}`,
+          `mean health ${(live.health_mean ?? 0).toFixed(1)}`,
+          `food eaten ${with_separators(live.food_eaten ?? 0)}`,
+          `poison eaten ${with_separators(live.poison_eaten ?? 0)}`,
+        ] :
+        []),
     `tick ${with_separators(snapshot.tick)} (${duration(snapshot.simulated_s)})`,
   ];
 }
 
 /** "anna: evoview 127.0.0.1:51234": who changed something. */
-export function actor_text(by: Message | undefined): string {
+export function actor_text(by: Message|undefined): string {
   switch (by?.kind) {
-    case "ACTOR_KIND_SCHEDULE": return "the schedule";
-    case "ACTOR_KIND_GOAL": return "a goal";
-    case "ACTOR_KIND_SERVER": return "evod";
+    case "ACTOR_KIND_SCHEDULE":
+      return "the schedule";
+    case "ACTOR_KIND_GOAL":
+      return "a goal";
+    case "ACTOR_KIND_SERVER":
+      return "evod";
     default: {
       const named = [by?.user, by?.client].filter(Boolean).join(": ");
       return named + (by?.address ? ` ${by.address}` : "") || "a local client";
@@ -118,7 +145,8 @@ function selection_text(selection: string, shuffled: boolean): string {
   if (selection === "truncation") {
     return "Only the fittest have offspring.";
   }
-  return `On average, fitter organisms have more offspring (${selection === "stochastic_universal" ? "stochastic universal" : selection} selection).`;
+  return `On average, fitter organisms have more offspring (${
+    selection === "stochastic_universal" ? "stochastic universal" : selection} selection).`;
 }
 
 /** "is 2 × the time lived plus the health at the end": a sum of the parts whose weight is not 0. */
@@ -144,27 +172,35 @@ export function experiment_text(set: Message): string {
   const number = (name: string): string => shown_number(number_of(name));
   const choice = (name: string): string => values.get(name)?.choice ?? "";
   const is_zero = (name: string): boolean => values.has(name) && number_of(name) === 0;
-  const fitness = choice("fitness") === "external" ? "comes from a client at the end of each generation"
-    : choice("fitness") !== "life" ? `is computed from the genes alone (${choice("fitness")})`
-    : weighted_sum_text([[number_of("fitness_per_second"), "the time lived"], [number_of("fitness_per_health"), "the health at the end"],
-                         [number_of("fitness_per_food"), "the food eaten"], [number_of("fitness_per_poison"), "the poison eaten"]]);
+  const fitness = choice("fitness") === "external" ?
+    "comes from a client at the end of each generation" :
+    choice("fitness") !== "life" ?
+    `is computed from the genes alone (${choice("fitness")})` :
+    weighted_sum_text([
+      [number_of("fitness_per_second"), "the time lived"], [number_of("fitness_per_health"), "the health at the end"],
+      [number_of("fitness_per_food"), "the food eaten"], [number_of("fitness_per_poison"), "the poison eaten"]
+    ]);
   const has_gene_costs = [...values.keys()].some((name) => name.endsWith("_cost") && number_of(name) !== 0);
   const has_networks = choice("controller") === "network";
   let text = number("population_size") +
-    (has_networks ? " organisms, each steered by an evolving neural network, eat" : " organisms seek") + ` food (+${number("food_health")} health)`;
+    (has_networks ? " organisms, each steered by an evolving neural network, eat" : " organisms seek") +
+    ` food (+${number("food_health")} health)`;
   if (!is_zero("poison_count")) {
     text += `${has_networks ? " and poison (−" : " and avoid poison (−"}${number("poison_harm")})`;
   }
   text += has_networks ? "; a line shows where each heads. " : ". ";
-  text += is_zero("health_loss_per_s") && !has_gene_costs ? "They lose no health over time."
-    : `Each loses ${number("health_loss_per_s")} health per second${has_gene_costs ? ", more or less with its genes," : ""} and dies at 0.`;
-  return `${text} Fitness ${fitness}. ${selection_text(choice("selection"), values.get("shuffle_fitness")?.flag === true)}`;
+  text += is_zero("health_loss_per_s") && !has_gene_costs ?
+    "They lose no health over time." :
+    `Each loses ${number("health_loss_per_s")} health per second${
+      has_gene_costs ? ", more or less with its genes," : ""} and dies at 0.`;
+  return `${text} Fitness ${fitness}. ${
+    selection_text(choice("selection"), values.get("shuffle_fitness")?.flag === true)}`;
 }
 
 /** The user and the role of a session: "vera (viewer)".
  *
  *  welcome  session.proto Welcome */
-export function session_text(welcome: Message | null): string {
+export function session_text(welcome: Message|null): string {
   const user: string = welcome?.user || "no token", role: string = welcome?.role ?? "ROLE_VIEWER";
   return `${user} (${role.replace("ROLE_", "").toLowerCase()})`;
 }

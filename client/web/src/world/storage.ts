@@ -1,12 +1,18 @@
 // storage: what the page remembers in this browser. A browser may forbid it; the page then begins with its defaults.
 
 /** For this tab only: the token, and whether the user takes part. */
-export const of_tab = { get: (key: string): string => get("sessionStorage", key), set: (key: string, value: string): void => set("sessionStorage", key, value) };
+export const of_tab = {
+  get: (key: string): string => get("sessionStorage", key),
+  set: (key: string, value: string): void => set("sessionStorage", key, value)
+};
 
 /** For all visits: look, theme and layout. */
-export const of_browser = { get: (key: string): string => get("localStorage", key), set: (key: string, value: string): void => set("localStorage", key, value) };
+export const of_browser = {
+  get: (key: string): string => get("localStorage", key),
+  set: (key: string, value: string): void => set("localStorage", key, value)
+};
 
-type Place = "sessionStorage" | "localStorage";
+type Place = "sessionStorage"|"localStorage";
 
 function get(place: Place, key: string): string {
   try {

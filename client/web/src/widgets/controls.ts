@@ -1,5 +1,5 @@
 // controls: widgets that several parts of the page use.
-import { h, set_text } from "./dom";
+import {h, set_text} from "./dom";
 
 /** Enables a button, or makes it explain why it cannot act: it stays reachable by keyboard, and guard() shows the reason. */
 export function set_allowed(button: HTMLElement, why_not: string, help = ""): void {
@@ -8,21 +8,26 @@ export function set_allowed(button: HTMLElement, why_not: string, help = ""): vo
 }
 
 /** A button that calls `act`, or shows its reason by `notify` while set_allowed() has disabled it. */
-export function guarded_button(label: string, notify: (text: string) => void, act: () => void, classes = "button"): HTMLButtonElement {
-  const button = h("button", {
-    type: "button", class: classes, onclick: () => {
-      if (button.getAttribute("aria-disabled") === "true") {
-        notify(button.title);
-      } else {
-        act();
-      }
+export function guarded_button(
+  label: string, notify: (text: string) => void, act: () => void, classes = "button"): HTMLButtonElement {
+  const button =
+    h("button", {
+      type: "button",
+      class: classes,
+      onclick: () => {
+        if (button.getAttribute("aria-disabled") === "true") {
+          notify(button.title);
+        } else {
+          act();
+        }
+      },
     },
-  }, label);
+      label);
   return button;
 }
 
 /** Sets an attribute only if it differs; null removes it. */
-export function set_attribute(element: Element, name: string, value: string | null): void {
+export function set_attribute(element: Element, name: string, value: string|null): void {
   if (element.getAttribute(name) !== value) {
     if (value === null) {
       element.removeAttribute(name);
@@ -33,10 +38,11 @@ export function set_attribute(element: Element, name: string, value: string | nu
 }
 
 /** Replaces the options of a select only if they differ, so that an open list is not disturbed. */
-export function set_options(select: HTMLSelectElement, options: { value: string; text: string }[], chosen: string): void {
-  const same = select.options.length === options.length && options.every((option, i) => select.options[i]!.value === option.value && select.options[i]!.text === option.text);
+export function set_options(select: HTMLSelectElement, options: {value: string; text: string}[], chosen: string): void {
+  const same = select.options.length === options.length &&
+    options.every((option, i) => select.options[i]!.value === option.value && select.options[i]!.text === option.text);
   if (!same) {
-    select.replaceChildren(...options.map(({ value, text }) => h("option", { value }, text)));
+    select.replaceChildren(...options.map(({value, text}) => h("option", {value}, text)));
   }
   if (select.value !== chosen) {
     select.value = chosen;
@@ -45,13 +51,17 @@ export function set_options(select: HTMLSelectElement, options: { value: string;
 
 /** A dialog of the page. The browser keeps the focus inside and returns it when the dialog closes. */
 export class Dialog {
-  readonly body = h("div", { class: "dialog-body" });
+  readonly body = h("div", {class: "dialog-body"});
   readonly element: HTMLDialogElement;
   #title = h("h2", {});
 
   constructor(title: string, classes = "") {
-    const close = h("button", { type: "button", class: "button button-quiet", "aria-label": "Close", onclick: () => this.close() }, "✕");
-    this.element = h("dialog", { class: `dialog ${classes}`, "aria-label": title }, h("div", { class: "dialog-head" }, this.#title, close), this.body);
+    const close =
+      h("button", {type: "button", class: "button button-quiet", "aria-label": "Close", onclick: () => this.close()},
+        "✕");
+    this.element =
+      h("dialog", {class: `dialog ${classes}`, "aria-label": title},
+        h("div", {class: "dialog-head"}, this.#title, close), this.body);
     set_text(this.#title, title);
     this.element.addEventListener("click", (event) => {
       if (event.target === this.element) { // the backdrop

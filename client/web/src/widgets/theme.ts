@@ -1,15 +1,24 @@
 // theme: dark, light, or as the browser prefers.
-import { set_attribute } from "./controls";
-import { h, set_text } from "./dom";
-import { of_browser } from "./storage";
+import {of_browser} from "../world/storage";
 
-type Theme = "" | "dark" | "light"; // "": as the browser prefers
-const names: { [theme in Theme]: [string, string] } = { "": ["◐", "Theme: as the system"], dark: ["☾", "Theme: dark"], light: ["☀", "Theme: light"] };
+import {set_attribute} from "./controls";
+import {h, set_text} from "./dom";
+
+type Theme = ""|"dark"|"light"; // "": as the browser prefers
+const names: {[theme in Theme]: [string, string]} = {
+  "": ["◐", "Theme: as the system"],
+  dark: ["☾", "Theme: dark"],
+  light: ["☀", "Theme: light"]
+};
 const order: Theme[] = ["", "dark", "light"];
 
 /** A button that goes through the themes. Applies the remembered theme at once. */
 export function theme_button(): HTMLButtonElement {
-  const button = h("button", { type: "button", class: "button button-quiet square", onclick: () => apply(order[(order.indexOf(theme) + 1) % order.length]!) });
+  const button = h("button", {
+    type: "button",
+    class: "button button-quiet square",
+    onclick: () => apply(order[(order.indexOf(theme) + 1) % order.length]!)
+  });
   let theme: Theme = "";
   const apply = (wanted: Theme): void => {
     theme = wanted;

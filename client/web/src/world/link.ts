@@ -1,21 +1,21 @@
 // link: the link to a moment of a world: "#world=default&generation=12&tick=600&island=0&organism=7".
 // client/core/page_link.h and client/python/evod/page_link.py define the same form. Pure functions.
-import { with_separators } from "./numbers";
-import type { Moment } from "./time_scale";
+import {with_separators} from "../texts/numbers";
+import type {Moment} from "./time_scale";
 
 /** What a link shows. null: the link does not say. */
 export interface PageMoment {
-  world: string | null;
-  generation: number | null; // null: the world as it runs
-  tick: number | null; // since the generation began
-  island: number | null;
-  organism: number | null;
-  rate: number | null; // snapshots per second
+  world: string|null;
+  generation: number|null; // null: the world as it runs
+  tick: number|null; // since the generation began
+  island: number|null;
+  organism: number|null;
+  rate: number|null; // snapshots per second
 }
 
 export interface ReadLink {
   moment: PageMoment;
-  got: { [field: string]: string }; // the numbers as the link spells them
+  got: {[field: string]: string}; // the numbers as the link spells them
   wrong: string[]; // sentences about fields that are no numbers
 }
 
@@ -24,18 +24,18 @@ export type LinkNumber = typeof numbers[number];
 
 /** Never contains a token. */
 export function link_of(page: string, moment: PageMoment): string {
-  const { world, generation, organism, rate } = moment;
+  const {world, generation, organism, rate} = moment;
   const island = moment.island ?? (organism === null ? null : 0), tick = generation === null ? null : moment.tick ?? 0;
-  const fields = Object.entries({ world, generation, tick, island, organism, rate });
+  const fields = Object.entries({world, generation, tick, island, organism, rate});
   return `${page}#${fields.filter(([, value]) => value !== null).map(([name, value]) => `${name}=${value}`).join("&")}`;
 }
 
 /** Reads location.hash. Returns null if it contains no field of a link. */
-export function read_link(hash: string): ReadLink | null {
+export function read_link(hash: string): ReadLink|null {
   const fields = new URLSearchParams(hash.replace(/^#/, ""));
   const world = fields.get("world");
-  const moment: PageMoment = { world, generation: null, tick: null, island: null, organism: null, rate: null };
-  const got: { [field: string]: string } = {}, wrong: string[] = [];
+  const moment: PageMoment = {world, generation: null, tick: null, island: null, organism: null, rate: null};
+  const got: {[field: string]: string} = {}, wrong: string[] = [];
   for (const name of numbers) {
     const text = fields.get(name)?.trim();
     if (text === undefined) {
@@ -55,7 +55,7 @@ export function read_link(hash: string): ReadLink | null {
       wrong.push(`tick: got ${got.tick} without a generation, allowed only with a generation`);
     }
   }
-  return moment.world === null && Object.keys(got).length === 0 && wrong.length === 0 ? null : { moment, got, wrong };
+  return moment.world === null && Object.keys(got).length === 0 && wrong.length === 0 ? null : {moment, got, wrong};
 }
 
 /** "island: got 7, world default has 0 to 3" */
@@ -65,7 +65,7 @@ export function wrong_number(read: ReadLink, name: LinkNumber, subject: string, 
 }
 
 /** A number within a range. Adds a sentence to `read.wrong` if the link asks for one outside. */
-export function within(read: ReadLink, name: LinkNumber, subject: string, first: number, last: number): number | null {
+export function within(read: ReadLink, name: LinkNumber, subject: string, first: number, last: number): number|null {
   const number = read.moment[name];
   if (number === null || (number >= first && number <= last && Number(read.got[name] ?? number) >= 0)) {
     return number;
@@ -80,7 +80,7 @@ export function within(read: ReadLink, name: LinkNumber, subject: string, first:
  *  field    "open_replay.at.tick"
  *  allowed  "0 to 2400 in generation 12", as in the refusal
  *  returns  {} for the last moment of the run. */
-export function nearest(read: ReadLink, wanted: Moment, field: string, allowed: string): Moment | null {
+export function nearest(read: ReadLink, wanted: Moment, field: string, allowed: string): Moment|null {
   const name = field.slice(field.lastIndexOf(".") + 1), range = /^(\d+)(?: to (\d+))?/.exec(allowed);
   if (!range || (name !== "generation" && name !== "tick") || wanted[name] === undefined) {
     return null;
@@ -88,8 +88,8 @@ export function nearest(read: ReadLink, wanted: Moment, field: string, allowed: 
   const first = Number(range[1]), last = Number(range[2] ?? range[1]);
   if (name === "tick") {
     read.wrong.push(wrong_number(read, name, `generation ${with_separators(wanted.generation ?? 0)}`, first, last));
-    return { generation: wanted.generation, tick: Math.min(Math.max(wanted.tick!, first), last) };
+    return {generation: wanted.generation, tick: Math.min(Math.max(wanted.tick!, first), last)};
   }
   read.wrong.push(wrong_number(read, name, "the run", first, last));
-  return wanted.generation! > last ? {} : { generation: first };
+  return wanted.generation! > last ? {} : {generation: first};
 }

@@ -1,0 +1,69 @@
+// FitnessCurve: the curves of the best and the mean fitness in the column. A click shows a generation in a replay.
+import {Plot} from "./plot";
+import type {Series, SeriesColour} from "./plot";
+import {running_mean} from "./plot_layout";
+import {marks_of} from "./change_marks";
+import {HistoryTable} from "./history_table";
+import {shown_number, significant} from "../texts/numbers";
+import type {ViewedWorld} from "../world/world";
+
+const generations_in_mean = 10;
+
+export class FitnessCurve {
+  readonly element: HTMLElement;
+  readonly #plot: Plot;
+  readonly #table = new HistoryTable();
+  #revision = -1;
+  #changes: unknown = null;
+  #change_count = 0;
+
+  /** on_click: the user chose this generation. */
+  constructor(on_click: (generation: number) => void, height = 84) {
+    this.#plot = new Plot({height, axes: false, on_click});
+    this.element = this.#plot.element;
+  }
+
+  /** Draws the history of the world if it has changed. */
+  update(world: ViewedWorld): void {
+    this.#table.set_history(world.history);
+    if (
+      this.#table.revision === this.#revision && world.changes === this.#changes &&
+      world.changes.length === this.#change_count) {
+      return;
+    }
+    this.#revision = this.#table.revision;
+    this.#changes = world.changes;
+    this.#change_count = world.changes.length;
+    const x = this.#table.column(null, "generation");
+    const line = (name: string, column: string, colour: SeriesColour, dash: number[]): Series => {
+      const raw = this.#table.column(null, column);
+      return {
+        kind: "line",
+        name,
+        colour,
+        dash,
+        x,
+        y: running_mean(raw, generations_in_mean),
+        raw,
+        newest: significant(raw[raw.length - 1] as number)
+      };
+    };
+    const known = x.length > 0;
+    this.#plot.set_content({
+      title: known ? `Fitness, generation ${shown_number(x[x.length - 1] as number)}` :
+                     "Fitness: the curve begins when the first generation ends",
+      series: known ? [line("best", "fitness_best", "orange", []), line("mean", "fitness_mean", "blue", [])] : [],
+      x_label: "generation",
+      y_label: "fitness",
+      counted_x: true,
+      from_zero: true,
+      smoothed: `mean of ${generations_in_mean}`,
+      marks: known ? [{marks: marks_of(world.changes), name: ""}] : [],
+      note_end: "A click shows this generation in a replay.",
+    });
+  }
+
+  close(): void {
+    this.#plot.close();
+  }
+}
