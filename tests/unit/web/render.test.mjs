@@ -316,8 +316,8 @@ test("trails keep three simulated seconds", () => {
 
 /** A renderer that draws into `scenes`. */
 function renderer_of(scenes) {
-  const renderer = new render.Renderer({ getContext: (kind) => kind === "2d" ? {} : null });
-  renderer.painter = { kind: "canvas2d", organisms_max: Infinity, label_height: 13, measure: () => 10, draw: (scene) => scenes.push(scene) };
+  const renderer = new render.Renderer({},
+    { kind: "canvas2d", organisms_max: Infinity, label_height: 13, measure: () => 10, draw: (scene) => scenes.push(scene) });
   renderer.resize(100, 100, 1);
   return renderer;
 }

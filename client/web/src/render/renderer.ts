@@ -111,7 +111,13 @@ export class Renderer {
   #drawn: Drawing|null = null;
   #drawn_key = "";
 
-  constructor(readonly canvas: OffscreenCanvas) {
+  /** painter: draws instead of the canvas, for tests. */
+  constructor(readonly canvas: OffscreenCanvas, painter: Painter|null = null) {
+    if (painter) {
+      this.#painter = painter;
+      this.#gl = null;
+      return;
+    }
     const gl = (this.#gl = canvas.getContext("webgl2", {alpha: false, antialias: false, depth: false, stencil: false}));
     if (gl === null) {
       const context = canvas.getContext("2d", {alpha: false});
