@@ -1,7 +1,6 @@
 // App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices below.
 import type {Message} from "../core/messages";
 import {panels} from "../panels/all";
-import {unused_name} from "../panels/new_world";
 import {Column} from "./column";
 import {set_attribute} from "../widgets/controls";
 import {copy_text} from "../widgets/copy";
@@ -10,6 +9,8 @@ import {event_text, noticed_events} from "../world/event_text";
 import {FitnessCurve} from "../plots/fitness_curve";
 import {LinkFollower} from "./link_follower";
 import {link_of} from "../world/link";
+import {unused_name} from "../world/names";
+import type {PlacedModel} from "../world/panel_context";
 import {Help, type KeyTarget, listen_to_keys} from "./keys";
 import {Banners, Notices, type Banner} from "../widgets/notices";
 import {PaneArea} from "./pane_area";
@@ -128,6 +129,14 @@ export class App implements KeyTarget {
     if (subject) {
       panel.show?.(subject);
     }
+  };
+
+  place_by_clicks = (model: PlacedModel): boolean => {
+    const problem = this.area().pane.place_copies_of(model);
+    if (problem) {
+      this.notify(problem);
+    }
+    return problem === "";
   };
 
   notify = (text: string): void => this.#notices.show(text);

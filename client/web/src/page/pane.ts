@@ -8,6 +8,8 @@ import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {IslandLegend} from "./island_legend";
 import {with_separators} from "../texts/numbers";
+import {gene_problem} from "../world/names";
+import type {PlacedModel} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
 
 /** The worker as the pane sees it. */
@@ -15,12 +17,6 @@ export interface WorkerLink {
   post(message: ToWorker, transfer?: Transferable[]): void;
   /** Calls `listener` for each message. Returns a function that ends it. */
   on_message(listener: (message: FromWorker) => void): () => void;
-}
-
-/** The organism that the tool "organism" places: its genes, and its name: "a copy of organism 12". */
-export interface PlacedModel {
-  name: string;
-  genes: number[];
 }
 
 export interface PaneOptions {
@@ -128,17 +124,22 @@ export class Pane {
     this.options.on_tool?.();
   }
 
-  /** Chooses the tool "organism" with these genes. */
-  place_copies_of(model: PlacedModel): void {
+  /** Chooses the tool "organism" with these genes. Returns why it cannot act in this world, as a sentence; empty if it can. */
+  place_copies_of(model: PlacedModel): string {
+    const problem = this.tool_problem("organism", model);
+    if (problem !== "") {
+      return problem;
+    }
     this.model = model;
     this.tool = "organism";
     this.#canvas.dataset.tool = this.tool;
     this.#send_pointer();
     this.options.on_tool?.();
+    return "";
   }
 
   /** Why the tool cannot act in this world, as a sentence; empty if it can. */
-  tool_problem(tool: Tool): string {
+  tool_problem(tool: Tool, model = this.model): string {
     const world = this.#world;
     if (tool === "select") {
       return "";
@@ -156,8 +157,12 @@ export class Pane {
     if (why !== "") {
       return why;
     }
-    return tool === "organism" && this.model === null && world.organism === null ?
-      "Select an organism to place copies of it." :
+    if (tool === "organism" && model === null && world.organism === null) {
+      return "Select an organism to place copies of it.";
+    }
+    const copies_selected = model === this.model && this.tool !== "organism" && world.organism !== null;
+    return tool === "organism" && model?.gene_names && !copies_selected ?
+      gene_problem(model.name, model.gene_names, world.name, world.gene_names) :
       "";
   }
 
