@@ -137,7 +137,7 @@ class Tasks(Case):
         child = self.child()
         self.click_organism(child.id)
         self.press(f"Why {child.parents[0]}?", "[data-panel=organism]")
-        self.browser.wait_for_text(f"{child.parents[0]}", "[data-panel=glass_box]")
+        self.browser.wait_for_text(f"in the slot of organism {child.parents[0]}", "[data-panel='glass box']")
 
     def test_create_a_world_from_an_experiment(self):
         self.press("New …")
