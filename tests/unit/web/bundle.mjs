@@ -16,7 +16,7 @@ export async function bundle(folder, names) {
   const cwd = path.join(sources, folder);
   const input = (names ?? readdirSync(cwd).map((file) => file.replace(/\.ts$/, "")))
     .map((name) => `export * from "./${name}";\n`).join("");
-  execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--log-level=warning",
+  execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--loader:.glsl=text", "--log-level=warning",
     `--outfile=${made}/${folder}.mjs`], { cwd, input });
   return import(`${made}/${folder}.mjs`);
 }

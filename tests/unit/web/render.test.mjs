@@ -10,7 +10,7 @@ import { fileURLToPath } from "node:url";
 const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), "../../..");
 const folder = path.join(root, "client/web/src/render");
 const all = readdirSync(folder).map((file) => `export * from "./${file.replace(/\.ts$/, "")}";\n`).join("");
-const bundle = execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts"], { cwd: folder, input: all });
+const bundle = execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--loader:.glsl=text"], { cwd: folder, input: all });
 const render = await import("data:text/javascript;base64," + bundle.toString("base64"));
 
 // ---- colours ---------------------------------------------------------------------------------------------------
