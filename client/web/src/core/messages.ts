@@ -48,6 +48,13 @@ export interface Drawing {
     null; // food and poison: only for tools other than select
 }
 
+/** What the newest snapshot says about an island that is shown as a tile. */
+export interface TileInfo {
+  generation: number;
+  alive: number;
+  health_mean: number; // of the living organisms; 0 if there are none
+}
+
 /** The camera of a pane, in pixels of the island. */
 export interface Camera {
   x_px: number; // the point in the middle of the pane
@@ -106,6 +113,11 @@ export type ToWorker =|{
   kind: "unwatch";
   pane: number
 }
+|{
+  kind: "islands";
+  pane: number;
+  islands: number
+} // shows so many islands of the watched world as tiles; 0: only the watched island
 |{
   kind: "camera";
   pane: number;
@@ -200,6 +212,11 @@ export type FromWorker =|{
   pane: number;
   drawing: Drawing
 } // after it has changed
+|{
+  kind: "tiles";
+  pane: number;
+  tiles: (TileInfo|null)[]
+} // of all islands, while they are shown as tiles; null: before the first snapshot
 |{
   kind: "watch_refused";
   pane: number;
