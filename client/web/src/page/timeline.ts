@@ -4,10 +4,10 @@
 //
 // Owner    App; one per pane.
 // Seeking  While a seek runs, only the newest moment that the user asks for is kept.
+import {marks_of} from "../plots/change_marks";
 import {with_separators} from "../texts/numbers";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {marks_of} from "../plots/change_marks";
 
 import {joined_marks, marked_generations, TimeScale, type JoinedMark, type Moment} from "../world/time_scale";
 import type {Message} from "../core/messages";
