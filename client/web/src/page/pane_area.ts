@@ -50,6 +50,7 @@ export class PaneArea {
     this.#islands.replaceChildren(
       icon(svg("path", {d: "M2 2h5v5H2zM9 2h5v5H9zM2 9h5v5H2zM9 9h5v5H9z", class: "pane-icon"})),
       h("span", {}, tile_texts.show));
+    set_attribute(this.#islands, "aria-label", tile_texts.show);
     set_attribute(this.#link, "aria-label", link_texts.name);
     this.#link.addEventListener("click", () => options.link());
     this.#beside.addEventListener("click", () => options.beside());
