@@ -6,7 +6,8 @@
 import {type CoreEvent, is_name_of_replay, type Subscription} from "./core/client_core";
 import {InvalidMessage} from "./core/errors";
 import {EventQueue} from "./core/event_queue";
-import type {FromWorker, Message, ToWorker} from "./core/messages";
+import {type Figures, type FromWorker, none_left, type ToWorker} from "./core/messages";
+import type {Request} from "./core/protocol";
 import type {Snapshot} from "./core/snapshot";
 import {worker_texts} from "./texts/worker";
 import {Connection} from "./worker/connection";
@@ -94,6 +95,8 @@ function take(events: CoreEvent[]): void {
       case "close":
         connection.lose(event.message, event.code);
         break;
+      default:
+        none_left(event);
     }
   }
 }
@@ -216,7 +219,7 @@ function pane_of(number: number): WorkerPane {
   return pane;
 }
 
-function request(id: number, request: Message, first: boolean): void {
+function request(id: number, request: Request, first: boolean): void {
   try {
     if (!connection.core) {
       throw new InvalidMessage(worker_texts.no_connection);
@@ -232,7 +235,7 @@ function request(id: number, request: Message, first: boolean): void {
 }
 
 /** Figures for tests and benchmarks. */
-function figures(): {[name: string]: number} {
+function figures(): Figures {
   return {
     ...timings.figures(performance.now()),
     damaged_snapshots: connection.core?.damaged_snapshot_count ?? 0,

@@ -1,6 +1,7 @@
 // App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices
 // below.
-import type {Message} from "../core/messages";
+import {kind_of, type RequestKind} from "../core/messages";
+import type {Event as WorldEvent} from "../core/protocol";
 import {panels} from "../panels/all";
 import {unused_name} from "../panels/new_world";
 import {Column} from "./column";
@@ -243,10 +244,11 @@ export class App implements KeyTarget {
   }
 
   /** Reports what others have done to a world that is shown. */
-  #announce(event: Message): void {
-    const kind = Object.keys(noticed_events).find((name) => event[name] !== undefined);
-    const shown = this.areas.some((area) => area.world.name === event.world || area.world.shown === event.world);
-    if (kind && shown && !noticed_events[kind]!.some((command) => this.server.has_sent(command, event.world))) {
+  #announce(event: WorldEvent): void {
+    const kind = kind_of(event)?.kind, world = event.world ?? "";
+    const commands = kind === undefined ? undefined : noticed_events[kind];
+    const is_shown = this.areas.some((area) => area.world.name === world || area.world.shown === world);
+    if (commands && is_shown && !commands.some((command) => this.server.has_sent(command as RequestKind, world))) {
       this.notify(event_text(event)[0] + ".");
     }
   }

@@ -121,7 +121,7 @@ export class Pane {
     }
     const alive = snapshot === null ?
       "" :
-      pane_texts.alive(snapshot.generation, Number(snapshot.live?.alive_count ?? snapshot.counts.organisms));
+      pane_texts.alive(snapshot.generation, snapshot.live?.alive_count ?? snapshot.counts.organisms);
     set_attribute(
       this.#canvas, "aria-label", shown === "" ? pane_texts.no_world : pane_texts.island(island, shown, alive));
     this.#legend.refresh(this.#world, this.tiles.is_on);

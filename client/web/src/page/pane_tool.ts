@@ -1,5 +1,6 @@
 // PaneTool: what a click on the island does: select, place food, poison or an organism, or remove.
-import type {Drawing, FromWorker, Message, Tool} from "../core/messages";
+import type {Drawing, FromWorker, Tool} from "../core/messages";
+import type {Place, Remove} from "../core/protocol";
 import {tool_texts} from "../texts/pane";
 import type {ViewedWorld} from "../world/world";
 
@@ -87,27 +88,24 @@ export class PaneTool {
     if (problem !== "" || picked.x_px < 0 || this.#world.snapshot === null) {
       return problem;
     }
-    const wanted = this.tool === "remove" ? this.#removal_of(picked) : this.#placing_at(picked);
-    if (wanted === null) {
-      return tool_texts.nothing_to_remove;
-    }
+    const {server, shown, island} = this.#world, where = {world: shown, island};
     try {
-      await this.#world.server.request(
-        this.tool === "remove" ? "remove" : "place", {world: this.#world.shown, island: this.#world.island, ...wanted});
+      if (this.tool !== "remove") {
+        await server.request("place", {...where, ...this.#placing_at(picked)});
+        return "";
+      }
+      const removal = removal_of(picked);
+      if (removal === null) {
+        return tool_texts.nothing_to_remove;
+      }
+      await server.request("remove", {...where, ...removal});
       return "";
     } catch (error) {
       return error instanceof Error ? error.message : String(error);
     }
   }
 
-  #removal_of({generation, organism, food, poison}: Picked): Message|null {
-    return organism !== null ? {generation, organisms: [organism]} :
-      food !== null          ? {generation, food: [food]} :
-      poison !== null        ? {generation, poison: [poison]} :
-                               null;
-  }
-
-  #placing_at({x_px, y_px}: Picked): Message {
+  #placing_at({x_px, y_px}: Picked): Place {
     const {width_px, height_px, item_radius_px} = this.#world.snapshot!;
     const inside = (value: number, size: number, radius: number): number =>
       Math.min(Math.max(value, radius), size - radius);
@@ -117,4 +115,12 @@ export class PaneTool {
     }
     return {items: [{...place(item_radius_px), kind: this.tool === "food" ? "ITEM_KIND_FOOD" : "ITEM_KIND_POISON"}]};
   }
+}
+
+/** What is removed there; null: nothing. */
+function removal_of({generation, organism, food, poison}: Picked): Remove|null {
+  return organism !== null ? {generation, organisms: [organism]} :
+    food !== null          ? {generation, food: [food]} :
+    poison !== null        ? {generation, poison: [poison]} :
+                             null;
 }

@@ -63,7 +63,7 @@ export class StreamedIsland {
 
   get organism_count(): number {
     const {info, count} = this.at.latest;
-    return Math.max(info?.counts.organisms ?? 0, Number(info?.live?.organism_count ?? 0), count);
+    return Math.max(info?.counts.organisms ?? 0, info?.live?.organism_count ?? 0, count);
   }
 
   /** The `count` healthiest organisms, the healthiest first. */

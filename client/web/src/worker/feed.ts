@@ -3,7 +3,7 @@
 // Views   Larger islands are streamed in tiles of the visible region, smaller ones whole. While one island is streamed in part,
 //         a second subscription sends densities of the whole island once a second, for the minimap.
 import type {Subscription} from "../core/client_core";
-import type {Message} from "../core/messages";
+import type {Detail, View} from "../core/protocol";
 import type {Snapshot} from "../core/snapshot";
 import type {Renderer} from "../render/renderer";
 import {tile_rate_hz} from "../render/tiles";
@@ -32,7 +32,7 @@ export class Feed {
   readonly #connection: Connection;
   #has_view = false; // the subscription is limited to a view
   #view_ms = 0; // when the last view was requested
-  #detail = ""; // of the last view of all islands
+  #detail: Detail = "DETAIL_UNSPECIFIED"; // of the last view of all islands
 
   constructor(connection: Connection) {
     this.#connection = connection;
@@ -54,7 +54,7 @@ export class Feed {
       return;
     }
     const {world, island, rate_hz} = this.watched, all = this.islands > 0, now_ms = performance.now();
-    this.#detail = "";
+    this.#detail = "DETAIL_UNSPECIFIED";
     this.#view_ms = now_ms;
     this.subscription = core.subscribe({
       subscribe_snapshots: {
@@ -111,7 +111,7 @@ export class Feed {
   }
 
   /** The view to request now; null if the last one is still suitable. */
-  #wanted(renderer: Renderer|null, now_ms: number): Message|null {
+  #wanted(renderer: Renderer|null, now_ms: number): View|null {
     if (this.islands === 0) {
       return renderer?.view.view_to_request(now_ms) ?? null;
     }

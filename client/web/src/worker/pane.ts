@@ -1,6 +1,6 @@
 // WorkerPane: one pane of the page in the worker: what it watches, what its canvas shows, and what it reports to the page.
 import type {Subscription} from "../core/client_core";
-import type {Camera, FromWorker, Look, ToWorker} from "../core/messages";
+import {type Camera, type FromWorker, type Look, none_left, type ToWorker} from "../core/messages";
 import type {Snapshot} from "../core/snapshot";
 import {Renderer} from "../render/renderer";
 import type {Connection} from "./connection";
@@ -178,6 +178,8 @@ export class WorkerPane {
       case "ask_columns":
         this.#post({kind: "columns", id: message.id, columns: this.newest()});
         break;
+      default:
+        none_left(message);
     }
   }
 
@@ -254,8 +256,8 @@ export class WorkerPane {
     this.#reported_ms.tiles = now_ms;
     const tiles = renderer.tiles().map((info) => info && {
       generation: info.generation,
-      alive: Number(info.live?.alive_count ?? info.counts.organisms),
-      health_mean: Number(info.live?.health_mean ?? 0)
+      alive: info.live?.alive_count ?? info.counts.organisms,
+      health_mean: info.live?.health_mean ?? 0
     });
     this.#report("tiles", JSON.stringify(tiles), {kind: "tiles", pane: this.#number, tiles});
   }

@@ -1,4 +1,5 @@
 // Timings: figures about the worker for tests and benchmarks. Times are those of the last timings_kept snapshots and frames.
+import type {Figures} from "../core/messages";
 
 const timings_kept = 200;
 
@@ -13,6 +14,9 @@ function percentile(times: number[], share: number): number {
   const sorted = [...times].sort((a, b) => a - b);
   return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? 0;
 }
+
+/** What is known here of the Figures. */
+type Timed = Omit<Figures, "damaged_snapshots"|"dropped">;
 
 export class Timings {
   snapshot_count = 0;
@@ -33,7 +37,7 @@ export class Timings {
     }
   }
 
-  figures(now_ms: number): {[name: string]: number} {
+  figures(now_ms: number): Timed {
     const memory = (performance as {memory?: {usedJSHeapSize: number}}).memory;
     return {
       decode_p50_ms: percentile(this.#decoded, 0.5),
