@@ -153,10 +153,14 @@ class Browser:
 
     def press(self, label, within="body"):
         """Clicks on the button with this text as soon as it can act."""
-        def look():
-            button = self.button(label, within)
-            return button if button.is_enabled() and button.get_attribute("aria-disabled") != "true" else None
-        self.click(waiting.until(look, f"the button {label!r} enabled", pause_s=0.05))
+        def clicked():
+            with contextlib.suppress(StaleElementReferenceException):  # the page has made another one
+                button = self.button(label, within)
+                if button.is_enabled() and button.get_attribute("aria-disabled") != "true":
+                    self.click(button)
+                    return True
+            return False
+        waiting.until(clicked, f"the button {label!r} enabled", pause_s=0.05)
 
     def panels(self):
         """The titles of all panels."""
@@ -180,9 +184,7 @@ class Browser:
 
     def set_camera(self, x_px, y_px, zoom):
         """Shows the island at this scale, which a user can only come near with the wheel."""
-        self.run("""const pane = evod.app.area().pane;
-            pane.camera = { x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] };
-            evod.server.post({ kind: "camera", pane: 0, camera: pane.camera });""", x_px, y_px, zoom)
+        self.run("evod.app.area().pane.view.set({ x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] })", x_px, y_px, zoom)
 
     def canvas(self):
         """The place of the canvas: its left, top, width and height in CSS pixels."""
