@@ -198,6 +198,11 @@ class Browser:
                         clip=dict(x=left, y=top, width=width, height=height, scale=1))
         return png.decode(base64.b64decode(shot["data"]))
 
+    def click_at(self, x, y):
+        """Clicks on a point of the page with the mouse."""
+        for kind in ("mousePressed", "mouseReleased"):
+            self.cdp("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
     def tap(self, x, y):
         """Touches a point of the page for a moment."""
         self.cdp("Emulation.setTouchEmulationEnabled", enabled=True)
