@@ -1,4 +1,5 @@
 // Plots panel: the statistics of a run, generation by generation, while it runs; compared with another world or an earlier run.
+import {marks_of} from "../plots/change_marks";
 import {
   extinctions,
   figure_of,
@@ -9,7 +10,6 @@ import {
   running_mean_name
 } from "../plots/figures";
 import {h, set_text} from "../widgets/dom";
-import {marks_of} from "../plots/change_marks";
 
 import type {Quantity, Subject} from "../plots/figures";
 import {HistoryTable} from "../plots/history_table";
@@ -17,7 +17,8 @@ import type {Island} from "../plots/history_table";
 import {history_csv, read_history_csv} from "../plots/history_csv";
 import {shown_number, with_separators} from "../texts/numbers";
 import {OtherHistory} from "../plots/other_history";
-import {LinkedX, Plot} from "../plots/plot";
+import {LinkedX} from "../plots/linked_x";
+import {Plot} from "../plots/plot";
 import type {ViewedWorld} from "../world/world";
 import type {Panel, PanelContext} from "../world/panel_context";
 
@@ -183,7 +184,7 @@ export class PlotsPanel implements Panel {
       this.#world_name = world.name;
       this.#run_id = run_id;
       this.#drawn = "";
-      this.#link.range = null;
+      this.#link.fit();
     }
     this.#table.set_history(world.history);
     this.#update_compare();

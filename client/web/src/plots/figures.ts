@@ -1,6 +1,6 @@
 // figures: the plots of one history, or of one history compared with another. Pure functions.
 import type {HistoryTable, Island} from "./history_table";
-import type {Marks, PlotContent, Series, SeriesColour} from "./plot";
+import type {Marks, PlotContent, Series, SeriesColour} from "./plot_content";
 import {compare_dash, histogram, range_of, running_mean} from "./plot_layout";
 import type {Mark, Numbers} from "./plot_layout";
 

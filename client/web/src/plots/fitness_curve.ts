@@ -1,10 +1,11 @@
 // FitnessCurve: the curves of the best and the mean fitness in the column. A click shows a generation in a replay.
 import {Plot} from "./plot";
-import type {Series, SeriesColour} from "./plot";
+import type {Series, SeriesColour} from "./plot_content";
 import {running_mean} from "./plot_layout";
 import {marks_of} from "./change_marks";
 import {HistoryTable} from "./history_table";
-import {shown_number, significant} from "../texts/numbers";
+import {significant} from "../texts/numbers";
+import {plot_texts} from "../texts/plot";
 import type {ViewedWorld} from "../world/world";
 
 const generations_in_mean = 10;
@@ -45,21 +46,22 @@ export class FitnessCurve {
         x,
         y: running_mean(raw, generations_in_mean),
         raw,
-        newest: significant(raw[raw.length - 1] as number)
+        newest: significant(raw[raw.length - 1]!)
       };
     };
     const known = x.length > 0;
     this.#plot.set_content({
-      title: known ? `Fitness, generation ${shown_number(x[x.length - 1] as number)}` :
-                     "Fitness: the curve begins when the first generation ends",
-      series: known ? [line("best", "fitness_best", "orange", []), line("mean", "fitness_mean", "blue", [])] : [],
-      x_label: "generation",
-      y_label: "fitness",
+      title: known ? plot_texts.curve_title(x[x.length - 1]!) : plot_texts.no_curve,
+      series: known ?
+        [line(plot_texts.best, "fitness_best", "orange", []), line(plot_texts.mean, "fitness_mean", "blue", [])] :
+        [],
+      x_label: plot_texts.generation,
+      y_label: plot_texts.fitness,
       counted_x: true,
       from_zero: true,
-      smoothed: `mean of ${generations_in_mean}`,
+      smoothed: plot_texts.mean_of(generations_in_mean),
       marks: known ? [{marks: marks_of(world.changes), name: ""}] : [],
-      note_end: "A click shows this generation in a replay.",
+      note_end: plot_texts.click_shows,
     });
   }
 

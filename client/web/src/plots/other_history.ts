@@ -1,6 +1,5 @@
 // OtherHistory: the history of a world that no pane shows, for a comparison. It follows the world while it runs.
 import {marks_of} from "./change_marks";
-
 import {HistoryTable} from "./history_table";
 
 import type {Mark} from "./plot_layout";
