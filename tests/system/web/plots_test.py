@@ -55,6 +55,22 @@ class Plots(page.Case):
                          self.evoctl(server, "history", "--csv"))
         self.browser.wait_for_text("Dashed: dropped.csv", ".plots")
 
+    def test_physics_shows_the_motion_of_the_island(self):
+        server = self.start(crate_count=3)
+        control = self.client(server)
+        control.run_to(60)
+        self.browser.open(self.page(server))
+        self.browser.panel("Physics")
+        self.browser.wait_for_text("33 bodies", ".physics")
+        for tick in (60, 90):
+            control.run_to(tick)
+            motion = control.call(get_motion=page.c.GetMotion(world="default")).motion
+            self.assertEqual((motion.tick, motion.body_count), (tick, 33))
+            shown = f"{motion.kinetic_energy:.6g}"
+            self.browser.wait("document.querySelector('.physics .plot-area').getAttribute('aria-label').replaceAll(',', '')"
+                              ".includes(arguments[0])", f"the energy at tick {tick}", f"kinetic energy: {shown} kg")
+        self.browser.wait_for_text("The tick is short enough", ".physics .good")
+
 
 if __name__ == "__main__":
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # closes the browser

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv");
+const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv", "plots/motion");
 const shown = { min: 0, max: 100 };
 
 test("ticks are round and inside the range", () => {
@@ -267,4 +267,30 @@ test("a wrong table names its line and what is allowed", () => {
   assert.match(plots.read_history_csv(text.trimEnd() + ",9\n"), /^line 2 has 21 cells, allowed: 20, as many as the heading$/);
   assert.match(plots.read_history_csv(text.split("\n")[0]), /^there is no row after the heading in line 1; allowed: /);
   assert.match(plots.read_history_csv(""), /^the file contains no table; allowed: /);
+});
+
+// ---- the motion of bodies ----
+
+test("a motion of the same tick replaces the last, an earlier one begins again", () => {
+  const history = new plots.MotionHistory();
+  for (const tick of [1, 2, 2]) {
+    history.add({ tick, body_count: 10 * tick, momentum_x: 3, momentum_y: 4 });
+  }
+  const [, momentum] = plots.measures.map((measure) => plots.motion_figure(measure, history.motions));
+  assert.deepEqual([momentum.series[0].x, momentum.series[0].y], [[1, 2], [5, 5]]);
+  history.add({ body_count: 1 });
+  assert.deepEqual(history.motions, [{ body_count: 1 }]);
+  Array.from({ length: 400 }, (_, i) => history.add({ tick: i + 1 }));
+  assert.deepEqual([history.motions.length, history.motions[0].tick], [300, 101]);
+});
+
+test("a tick is judged by the bodies that move too far", () => {
+  const motion = { tick_s: 0.1, body_count: 100, generation_tick: 10, fastest_step_share: 1, fastest_px_s: 80 };
+  const judged = (too_fast_count, more = {}) => plots.judge_tick({ ...motion, too_fast_count, ...more });
+  assert.deepEqual(judged(undefined), { level: "good", sentence: "The tick is short enough: the fastest body moves 1 of its radius in a tick." });
+  assert.match(judged(29).sentence, /^The tick is short enough: only on average 2.9 of 100 bodies move further /);
+  assert.equal(judged(30).level, "nearly too long");
+  assert.equal(judged(100).level, "too long");
+  assert.match(judged(100).sentence, /Set tick_s to 0.05 or less, or max_speed_px_s to 40\.$/);
+  assert.match(judged(100, { fastest_step_share: 0.4 }).sentence, /Halve tick_s, to 0.05, or lower max_speed_px_s\.$/);
 });

@@ -2,4 +2,5 @@
 export {FamilyPanel} from "./family";
 export {GlassBoxPanel} from "./glass_box";
 export {OrganismPanel} from "./organism";
+export {PhysicsPanel} from "./physics";
 export {PlotsPanel} from "./plots";
