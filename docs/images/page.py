@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Makes page.png and page_tablet.png, the images of the page in a browser: docs/images/page.py. Build the preset release first.
+"""Makes page.png, page_tablet.png, glass_box_picks.png and glass_box_child.png, the images of the page in a browser:
+docs/images/page.py. Build the preset release first.
 
 They show a world of seed 7. The packages python3-selenium, python3-pil and
 chromium-driver are needed.
@@ -29,9 +30,12 @@ def evoctl(*arguments, check=True):
                           stderr=None if check else subprocess.DEVNULL).returncode == 0
 
 
-def save(page, name):
+def save(page, name, part=None):
+    """Saves the whole page, or the part of it that a CSS selector names."""
     page.run("document.activeElement.blur()")
-    shot = base64.b64decode(page.cdp("Page.captureScreenshot", format="png")["data"])
+    clip = part and page.value("""(({ x, y, width, height }) => ({ x: x - 8, y: y - 8, width: width + 16, height: height + 16, scale: 1 }))(
+        document.querySelector(arguments[0]).getBoundingClientRect())""", part)
+    shot = base64.b64decode(page.cdp("Page.captureScreenshot", format="png", **({"clip": clip} if clip else {}))["data"])
     Image.open(io.BytesIO(shot)).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
     size = (HERE / name).stat().st_size
     assert size <= BYTES_MAX, f"{name}: {size} bytes, allowed at most {BYTES_MAX}"
@@ -50,6 +54,28 @@ def show(page, tick, panel, shown):
     page.wait("document.querySelector('.panel-body').innerText.includes(arguments[0])", "the panel", shown)
 
 
+def show_breeding(page):
+    """Saves a pick of the first breeding, and its last child."""
+    page.resize(1280, 1400)
+    page.panel("Glass box")
+    page.wait_for_text("Play the 25 picks")
+    page.type_into(page.element(".glass-generation"), "1")
+    page.wait_for_text("generation 1:", ".glass-box")
+    page.wait_for_text("Play the 25 picks")
+
+    def move(label, times=1):
+        for _ in range(times):
+            page.click(label)
+    move("To the next stage (Page Down)")
+    move("One step forward (→)", 9)
+    page.wait_for_text("step 10 of")
+    save(page, "glass_box_picks.png", ".glass-box")
+    move("To the next stage (Page Down)")
+    move("One step forward (→)", 26)
+    page.wait_for_text("step 52 of")
+    save(page, "glass_box_child.png", ".glass-box")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         server = subprocess.Popen([BIN / "evod", "--port", str(PORT), "--web", "--http-port", str(HTTP_PORT), "--seed", "7",
@@ -62,6 +88,7 @@ def main():
             page.open(f"http://127.0.0.1:{HTTP_PORT}/")
             show(page, 33_900, "Worlds", "Islands of default")
             save(page, "page.png")
+            show_breeding(page)
             page.cdp("Emulation.setTouchEmulationEnabled", enabled=True)
             page.cdp("Emulation.setDeviceMetricsOverride", width=820, height=1180, deviceScaleFactor=1, mobile=True)
             page.open(f"http://127.0.0.1:{HTTP_PORT}/")

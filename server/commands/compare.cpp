@@ -5,10 +5,13 @@
 #include "server/commands/common_options.h"
 #include "server/commands/comparison_report.h"
 #include "server/commands/interrupt.h"
+#include "server/commands/json_lines.h"
 #include "server/commands/plot_program.h"
 #include "server/commands/progress_line.h"
 #include "server/experiments/comparison_plan.h"
 #include "server/runtime/random_ids.h"
+
+#include <boost/json/array.hpp>
 
 #include <unistd.h>
 
@@ -31,6 +34,7 @@ struct CompareOptions {
     std::uint32_t replicates = 20; // >= 2
     std::size_t jobs = default_thread_count();
     std::string csv, plot; // paths; empty: write no such file
+    bool json = false;
 };
 
 constexpr std::uint32_t replicates_advised = 20;
@@ -65,11 +69,11 @@ base::Result<void> check_outputs(const CompareOptions& options) {
 }
 
 std::optional<std::vector<std::vector<Course>>> run(const ComparisonPlan& plan, const CompareOptions& options) {
-    ProgressLine line;
+    ProgressLine line{options.json};
     const auto start = std::chrono::steady_clock::now();
     experiments::RunsWanted wanted{.seed = plan.seed, .replicates = options.replicates, .jobs = options.jobs};
     wanted.progress = [&](double share) {
-        line.show([&] {
+        line.show(share, [&] {
             const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
             char text[64];
             std::snprintf(text, sizeof text, "%3.0f %% of all generations, ", std::floor(share * 100));
@@ -131,6 +135,57 @@ bool write_plot(const std::string& path, const ComparisonPlan& plan, std::span<c
     return drawn.has_value();
 }
 
+/// What the comparison prints before its runs.
+std::string heading_of(const ComparisonPlan& plan, std::uint32_t replicates) {
+    const std::string generations = std::to_string(plan.generations);
+    return plan.arms[0].name + ": " + std::to_string(replicates) + " replicates of " + generations +
+           " generations, from seed " + std::to_string(plan.seed.value) + "\nrise: mean fitness of generation " +
+           generations + " minus that of generation 1\n\n";
+}
+
+/// The result for programs.
+///
+/// conclusions, report  the sentences and the whole text that are printed without --json.
+boost::json::object result_object(const ComparisonPlan& plan, std::span<const std::vector<Course>> courses,
+                                  std::span<const experiments::Finding> findings, const std::string& conclusions,
+                                  const std::string& report) {
+    boost::json::array worlds, not_run, differences;
+    for (std::size_t arm = 0; arm < courses.size(); ++arm) {
+        const Rise rise = rise_of_arm(plan.arms[arm], courses[arm]);
+        worlds.push_back(
+            {{"name", plan.arms[arm].name},
+             {"first", rise.first},
+             {"last", rise.last},
+             {"rise", rise.mean},
+             {"rise_low", rise.interval.low},
+             {"rise_high", rise.interval.high},
+             {"extinct", rise.extinct},
+             {"changes", experiments::changes_between(plan.arms[0].parameters, plan.arms[arm].parameters)}});
+    }
+    for (const experiments::Control& control : plan.controls) {
+        if (!control.cannot_differ.empty()) {
+            not_run.push_back({{"name", control.name}, {"reason", control.cannot_differ}});
+        }
+    }
+    for (std::size_t i = 0; i < findings.size(); ++i) {
+        const experiments::Finding& finding = findings[i];
+        differences.push_back({{"other", plan.arms[i + 1].name},
+                               {"difference", finding.mean},
+                               {"low", finding.interval.low},
+                               {"high", finding.interval.high},
+                               {"g", finding.effect_size ? boost::json::value(*finding.effect_size) : nullptr},
+                               {"p", finding.p},
+                               {"adjusted", finding.adjusted_p}});
+    }
+    return {{"seed", plan.seed.value},
+            {"generations", plan.generations},
+            {"worlds", std::move(worlds)},
+            {"not_run", std::move(not_run)},
+            {"differences", std::move(differences)},
+            {"conclusions", conclusions},
+            {"report", report}};
+}
+
 /// Prints results to stdout, and progress and errors to stderr. Returns the exit status. If the comparison is
 /// interrupted, it neither prints nor writes results.
 int compare(const CompareOptions& options) {
@@ -146,13 +201,16 @@ int compare(const CompareOptions& options) {
                   << " replicates can show only large differences\n";
     }
     catch_interrupts();
-    std::printf("%s: %u replicates of %u generations, from seed %llu\n", plan->arms[0].name.c_str(), options.replicates,
-                plan->generations, static_cast<unsigned long long>(plan->seed.value));
-    std::printf("rise: mean fitness of generation %u minus that of generation 1\n\n", plan->generations);
-    std::fflush(stdout);
+    const std::string heading = heading_of(*plan, options.replicates);
+    if (!options.json) {
+        std::fputs(heading.c_str(), stdout);
+        std::fflush(stdout);
+    }
     const auto courses = run(*plan, options);
     if (!courses) {
-        std::puts("interrupted: there are no results");
+        if (!options.json) {
+            std::puts("interrupted: there are no results");
+        }
         return exit_interrupted;
     }
     const int decimals = decimals_for(*courses);
@@ -162,8 +220,13 @@ int compare(const CompareOptions& options) {
         findings = experiments::find_differences(*courses, plan->seed);
         text += findings_text(*plan, findings, decimals) + "\n";
     }
-    text += conclusions_text(*plan, *courses, findings, decimals);
-    std::fputs(text.c_str(), stdout);
+    const std::string conclusions = conclusions_text(*plan, *courses, findings, decimals);
+    text += conclusions;
+    if (options.json) {
+        print_json(result_object(*plan, *courses, findings, conclusions, heading + text));
+    } else {
+        std::fputs(text.c_str(), stdout);
+    }
     bool written = true;
     if (!options.csv.empty()) {
         written &= write_file("--csv", options.csv,
@@ -212,6 +275,7 @@ void add_compare_command(command_line::Command& app) {
     command.add_option("--csv", &options.csv, "CSV file to which the fitness of every run and generation is written");
     command.add_option("--plot,--picture", &options.plot,
                        "SVG, PNG or PDF file to which the curves are drawn; needs the package python3-matplotlib");
+    add_json_option(command, options.json);
     command.footer("Exit status: 0 compared, 130 interrupted, 1 error.");
     command.action([&] { return compare(options); });
 }

@@ -40,20 +40,10 @@ std::vector<double> rises_of(std::span<const Course> courses) {
 }
 
 std::string rise_row(const ComparisonPlan& plan, const Arm& arm, std::span<const Course> courses, int decimals) {
-    std::vector<double> first, last;
-    std::size_t extinct = 0; // number of generations in which all organisms died
-    for (const Course& course : courses) {
-        first.push_back(course.front().mean);
-        last.push_back(course.back().mean);
-        extinct += static_cast<std::size_t>(std::ranges::count(course, 0u, &GenerationFitness::alive_count));
-    }
-    if (!parameters::has_bodies(arm.parameters)) {
-        extinct = 0; // no organism can die if fitness is a function of the chromosome alone
-    }
-    const std::vector<double> rises = rises_of(courses);
+    const Rise rise = rise_of_arm(arm, courses);
     std::string row = formatted("%-*s %9.*f %9.*f %9s  %-20s %7zu  ", name_width_of(plan), arm.name.c_str(), decimals,
-                                mean_of(first), decimals, mean_of(last), signed_text(mean_of(rises), decimals).c_str(),
-                                interval_text(student_interval(rises), decimals).c_str(), extinct) +
+                                rise.first, decimals, rise.last, signed_text(rise.mean, decimals).c_str(),
+                                interval_text(rise.interval, decimals).c_str(), rise.extinct) +
                       changes_between(plan.arms[0].parameters, arm.parameters);
     row.erase(row.find_last_not_of(' ') + 1);
     return row + "\n";
@@ -87,6 +77,21 @@ int decimals_for(std::span<const std::vector<Course>> courses) {
         }
     }
     return greatest >= 20 ? 1 : greatest >= 2 ? 2 : 4;
+}
+
+Rise rise_of_arm(const Arm& arm, std::span<const Course> courses) {
+    std::vector<double> first, last;
+    std::size_t extinct = 0;
+    for (const Course& course : courses) {
+        first.push_back(course.front().mean);
+        last.push_back(course.back().mean);
+        extinct += static_cast<std::size_t>(std::ranges::count(course, 0u, &GenerationFitness::alive_count));
+    }
+    if (!parameters::has_bodies(arm.parameters)) {
+        extinct = 0; // no organism can die if fitness is a function of the chromosome alone
+    }
+    const std::vector<double> rises = rises_of(courses);
+    return {mean_of(first), mean_of(last), mean_of(rises), student_interval(rises), extinct};
 }
 
 std::string rises_text(const ComparisonPlan& plan, std::span<const std::vector<Course>> courses, int decimals) {

@@ -15,6 +15,15 @@ namespace evod::commands {
 /// Returns the number of decimals with which a table shows mean fitnesses, depending on the largest of them.
 int decimals_for(std::span<const std::vector<experiments::Course>> courses);
 
+/// The fitness of an arm over its replicates.
+struct Rise {
+    double first = 0, last = 0;     // mean fitness of the first and of the last generation
+    double mean = 0;                // mean rise
+    experiments::Interval interval; // 95 % confidence interval of the mean rise
+    std::size_t extinct = 0;        // number of generations in which all organisms died
+};
+Rise rise_of_arm(const experiments::Arm& arm, std::span<const experiments::Course> courses);
+
 /// Formats a table with the rise in mean fitness of every arm, that is, of each compared world.
 ///
 /// courses  shape (arms, replicates).

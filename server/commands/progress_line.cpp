@@ -1,8 +1,14 @@
 #include "server/commands/progress_line.h"
 
+#include "server/commands/json_lines.h"
+
 #include <cmath>
 
 namespace evod::commands {
+
+void ProgressLine::print_share(double share) {
+    print_json({{"progress", share}});
+}
 
 std::string time_left(double share, double seconds_gone) {
     const double seconds = seconds_gone / share * (1 - share);

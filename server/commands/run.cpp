@@ -5,12 +5,14 @@
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
 #include "server/commands/interview.h"
+#include "server/commands/json_lines.h"
 #include "server/commands/progress_line.h"
 #include "server/commands/report.h"
 #include "server/commands/shared_worlds.h"
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
 #include "server/experiments/run_recording.h"
+#include "server/experiments/sweep_folder.h"
 #include "server/replay/columns.h"
 #include "server/runtime/random_ids.h"
 #include "server/runtime/worker_pool.h"
@@ -45,6 +47,7 @@ struct RunOptions {
     std::string csv;                          // path; empty: write no CSV file
     std::string run_file;                     // path; empty: write no run file
     bool ask = false;
+    bool json = false;
     SharingOptions sharing;
 };
 
@@ -175,7 +178,8 @@ void print_summary(const simulation::World& world, const ComputationTime& cost) 
     }
 }
 
-int status_of(evolution::Outcome outcome) {
+/// Prints why the run ended. Returns the exit status.
+int print_outcome(evolution::Outcome outcome) {
     switch (outcome) {
     case evolution::Outcome::TargetFitness:
         std::puts("ended: target_fitness was reached");
@@ -196,9 +200,30 @@ int status_of(evolution::Outcome outcome) {
     return exit_interrupted;
 }
 
+/// Prints for programs why and how the run ended. Returns the exit status.
+int print_end_as_json(const simulation::World& world, const ComputationTime& cost) {
+    const evolution::Outcome outcome = world.outcome();
+    const bool is_running = outcome == evolution::Outcome::Running;
+    print_json({{"seed", world.seed().value},
+                {"outcome", is_running ? std::string{"interrupted"} : std::string{experiments::name_of(outcome)}},
+                {"generations", world.moment().generation - (world.generation_over() ? 0 : 1)},
+                {"ticks", world.moment().tick},
+                {"simulated_s", world.moment().simulated_s},
+                {"state_hash", base::to_text(world.hash())},
+                {"start_s", cost.start_s},
+                {"tick_s", cost.tick_s},
+                {"turnover_s", cost.turnover_s},
+                {"exchange_s", cost.exchange_s},
+                {"organism_ticks", cost.organism_ticks}});
+    return is_running                                  ? exit_interrupted
+           : outcome == evolution::Outcome::Stagnation ? exit_stagnated
+           : outcome == evolution::Outcome::Extinction ? exit_extinct
+                                                       : 0;
+}
+
 /// Prints why and how the run ended. Returns the exit status.
 int print_end(const simulation::World& world, const ComputationTime& cost) {
-    const int status = status_of(world.outcome());
+    const int status = print_outcome(world.outcome());
     print_summary(world, cost);
     std::fflush(stdout); // an mpirun that was interrupted kills its processes while they leave MPI
     return status;
@@ -212,8 +237,12 @@ class Output {
         gene_names_ = replay::gene_names_of(experiment.parameters);
         several_islands_ = experiment.parameters.island_count > 1;
         csv_path_ = options.csv;
+        json_ = options.json;
         if (auto opened = open_csv(recording); !opened) {
             return opened;
+        }
+        if (json_) {
+            return {};
         }
         std::printf("seed %llu\n", static_cast<unsigned long long>(experiment.seed->value));
         if (recording && recording->stored() == experiments::Stored::Whole) {
@@ -231,7 +260,9 @@ class Output {
     /// Writes the rows of a generation.
     base::Result<void> write(const simulation::GenerationRows& rows) {
         for (const simulation::GenerationStatistics& statistics : rows) {
-            std::puts(table_row(statistics, several_islands_).c_str());
+            if (!json_) {
+                std::puts(table_row(statistics, several_islands_).c_str());
+            }
         }
         std::fflush(stdout);
         add_to_csv(rows);
@@ -281,7 +312,7 @@ class Output {
     }
 
     std::vector<std::string> gene_names_;
-    bool several_islands_ = false;
+    bool several_islands_ = false, json_ = false;
     std::string csv_path_;
     std::optional<files::UnfinishedFile> csv_;
     std::optional<replay::Table> table_;
@@ -295,7 +326,7 @@ struct Simulation {
     Output& output;
     ComputationTime& cost;
     base::Result<void> written = {}; // the first error of a file
-    ProgressLine progress = {};
+    ProgressLine progress{};
 
     /// Calls write() unless there was an error, and keeps its error.
     template <class Write>
@@ -420,6 +451,11 @@ int run(const RunOptions& options, const SharedWork& shared) {
     }
     if (*recording && (*recording)->stored() == experiments::Stored::Whole) {
         const base::Result<void> finished = output.finish();
+        if (finished && options.json) {
+            print_json({{"seed", beginning->experiment.seed->value},
+                        {"outcome", "complete before"},
+                        {"generations", (*recording)->continues_at()}});
+        }
         return finished ? 0 : fail(finished.error());
     }
     ComputationTime cost;
@@ -437,7 +473,7 @@ int run(const RunOptions& options, const SharedWork& shared) {
         return fail(simulation.written.error());
     }
     cost.exchange_s = shared.processes.exchange_s();
-    return print_end(simulation.world, cost);
+    return options.json ? print_end_as_json(simulation.world, cost) : print_end(simulation.world, cost);
 }
 
 /// What was started, as text.
@@ -475,8 +511,11 @@ void add_run_command(command_line::Command& app) {
     command.add_option("--run-file", &options.run_file,
                        "Run file, NAME.evod, in which the run is stored; if it contains a part of this run, the run "
                        "continues at the beginning of the last generation in it");
-    command.add_flag("--ask", &options.ask,
-                     "Prompt for population, food, poison, time and every setting of the genetic algorithm");
+    const auto with_json = add_json_option(command, options.json);
+    command
+        .add_flag("--ask", &options.ask,
+                  "Prompt for population, food, poison, time and every setting of the genetic algorithm")
+        .excludes(with_json);
     command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
                    "2 a value is not allowed, 5 a process of mpirun was lost.");
     command.action([&] {

@@ -5,6 +5,7 @@
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
+#include "server/commands/json_lines.h"
 #include "server/commands/progress_line.h"
 #include "server/experiments/sweep_file.h"
 #include "server/experiments/sweep_folder.h"
@@ -12,6 +13,9 @@
 #include "server/experiments/trials.h"
 #include "server/runtime/processes.h"
 #include "server/runtime/random_ids.h"
+#include "server/simulation/model_version.h"
+
+#include <boost/json/array.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -44,13 +48,16 @@ struct SweepOptions {
     std::optional<std::size_t> array_index; // run only this cell
     bool gather = false;                    // only write runs.csv
     bool dry_run = false;                   // only print cells and seeds
+    std::optional<std::size_t> run;         // execute only this run, and write its rows into `part`
+    std::string part;                       // path of a file
+    bool json = false;
 };
 
 /// Prints the progress of all runs to stderr. The threads of the runner call it.
 class Progress {
   public:
     /// work  total work of the runs; nullopt: unknown, so progress is measured by the number of finished runs.
-    Progress(std::size_t runs, std::optional<double> work) : runs_{runs}, work_{work} {}
+    Progress(std::size_t runs, std::optional<double> work, bool json) : runs_{runs}, work_{work}, line_{json} {}
 
     void generation_done(double work) {
         const std::scoped_lock lock{mutex_};
@@ -68,9 +75,9 @@ class Progress {
 
   private:
     void show() {
-        line_.show([&] {
+        const double share = work_ ? done_ / *work_ : static_cast<double>(runs_done_) / static_cast<double>(runs_);
+        line_.show(share, [&] {
             const double s = seconds();
-            const double share = work_ ? done_ / *work_ : static_cast<double>(runs_done_) / static_cast<double>(runs_);
             const double rate = static_cast<double>(runs_done_) / s;
             char text[96];
             std::snprintf(text, sizeof text, "%zu of %zu runs, %.3g runs/%s", runs_done_, runs_,
@@ -131,11 +138,53 @@ void print_seeds(const Sweep& sweep) {
     std::puts((text + (sweep.replicates > printed_max ? " …; --dry-run prints all of them" : "")).c_str());
 }
 
+/// The runs of the sweep for programs.
+boost::json::object plan_object(const Sweep& sweep) {
+    boost::json::array seeds, parameters, cells;
+    for (std::uint32_t replicate = 0; replicate < sweep.replicates; ++replicate) {
+        seeds.push_back(experiments::replicate_seed(sweep.seed, replicate).value);
+    }
+    for (const parameters::ParameterDescription* parameter : sweep.swept) {
+        parameters.emplace_back(std::string{parameter->name});
+    }
+    for (const std::vector<parameters::ParameterValue>& values : sweep.cells) {
+        boost::json::array& cell = cells.emplace_back(boost::json::array{}).as_array();
+        for (const parameters::ParameterValue& value : values) {
+            cell.emplace_back(parameters::to_text(value));
+        }
+    }
+    return {{"evod", experiments::version_and_build()},
+            {"model", simulation::model_version},
+            {"seed", sweep.seed.value},
+            {"seeds", std::move(seeds)},
+            {"parameters", std::move(parameters)},
+            {"cells", std::move(cells)}};
+}
+
+boost::json::object run_object(const Sweep& sweep, std::size_t run) {
+    const std::size_t replicate = run % sweep.replicates;
+    return {{"run", run},
+            {"cell", run / sweep.replicates},
+            {"replicate", replicate},
+            {"seed", experiments::replicate_seed(sweep.seed, static_cast<std::uint32_t>(replicate)).value}};
+}
+
 /// Writes runs.csv. Prints its number of rows, and how many runs ended by which criterion.
-Result<void> gather(const SweepFolder& folder) {
+Result<void> gather(const SweepFolder& folder, bool json) {
     const auto gathered = folder.gather();
     if (!gathered) {
         return gathered.error();
+    }
+    if (json) {
+        boost::json::object outcomes;
+        for (const auto& [outcome, runs] : gathered->runs) {
+            outcomes[experiments::name_of(outcome)] = runs;
+        }
+        print_json({{"table", folder.table()},
+                    {"rows", gathered->rows},
+                    {"outcomes", std::move(outcomes)},
+                    {"missing", boost::json::array{}}});
+        return {};
     }
     std::string ends;
     for (const auto& [outcome, runs] : gathered->runs) {
@@ -163,6 +212,17 @@ Refusal missing_runs_refusal(const std::vector<std::size_t>& missing, const Swee
     return refusal(base::RefusalCode::FailedPrecondition,
                    std::to_string(missing.size()) + " of " + counted(sweep.run_count(), "run") +
                        " are missing: " + names + (missing.size() > printed_max ? ", …" : ""));
+}
+
+/// Prints the missing runs for programs, with the files that they have to write.
+void print_missing_runs(const std::vector<std::size_t>& missing, const Sweep& sweep, const SweepFolder& folder) {
+    boost::json::array runs;
+    for (const std::size_t run : missing) {
+        boost::json::object object = run_object(sweep, run);
+        object["part"] = folder.part_of(run);
+        runs.push_back(std::move(object));
+    }
+    print_json({{"missing", std::move(runs)}});
 }
 
 /// The results of all processes together.
@@ -202,7 +262,7 @@ Result<std::size_t> execute_runs(const std::vector<std::size_t>& runs, const Swe
                                      .on_generation = [&](double work) { progress->generation_done(work); },
                                      .on_run = [&](double work) { progress->run_done(work); }}};
     const std::vector<std::size_t> share = runner.share_of(runs);
-    progress.emplace(share.size(), runner.work_of(share));
+    progress.emplace(share.size(), runner.work_of(share), options.json);
     const std::clock_t cpu = std::clock();
     const auto made = runner.execute(share);
     const auto all = add_up(made, static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC, processes);
@@ -210,7 +270,7 @@ Result<std::size_t> execute_runs(const std::vector<std::size_t>& runs, const Swe
     if (!all) {
         return all.error();
     }
-    if (processes.rank() == 0 && all->runs > 0) {
+    if (processes.rank() == 0 && all->runs > 0 && !options.json) {
         const double seconds = progress->seconds();
         const std::size_t at_once = std::min(jobs * processes.size(), runs.size());
         std::printf("%s in %.2f s, %.3g per second; %zu at a time, each %.1f %% busy\n",
@@ -226,6 +286,11 @@ Result<Sweep> load(const SweepOptions& options) {
         return refusal(base::RefusalCode::InvalidArgument,
                        "--array-index: got " + std::to_string(*options.array_index) + ", allowed 0 to " +
                            std::to_string(sweep->cells.size() - 1));
+    }
+    if (sweep && options.run && *options.run >= sweep->run_count()) {
+        return refusal(base::RefusalCode::InvalidArgument, "--run: got " + std::to_string(*options.run) +
+                                                               ", allowed 0 to " +
+                                                               std::to_string(sweep->run_count() - 1));
     }
     return sweep;
 }
@@ -256,7 +321,7 @@ Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep
         of_rank_0(missing_runs(wanted, folder,
                                options.run_files ? SweepFolder::Wanted::RowsAndRunFile : SweepFolder::Wanted::Rows),
                   processes);
-    if (processes.rank() == 0) {
+    if (processes.rank() == 0 && !options.json) {
         const std::string cell = options.array_index ? ", only cell " + std::to_string(*options.array_index) : "";
         const std::size_t found = wanted.size() - missing.size();
         std::printf("%s%s%s; into %s\n", plan_text(options, sweep).c_str(), cell.c_str(),
@@ -274,12 +339,38 @@ Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep
         return made.error();
     }
     if (*made < missing.size()) {
-        if (processes.rank() == 0) {
+        if (processes.rank() == 0 && !options.json) {
             std::printf("interrupted: %s left; the same command resumes the sweep\n",
                         counted(missing.size() - *made, "run").c_str());
             std::fflush(stdout); // an mpirun that was interrupted kills its processes while they leave MPI
         }
         return exit_interrupted;
+    }
+    return 0;
+}
+
+/// Executes one run, and writes its rows into a file without a folder of the sweep. Returns the exit status.
+Result<int> execute_one_run(const SweepOptions& options, const Sweep& sweep) {
+    catch_interrupts();
+    Progress progress{1, experiments::work_of_run(sweep.parameters_of(*options.run / sweep.replicates)), options.json};
+    experiments::SweepRunnerOptions running;
+    running.stopped = interrupted;
+    running.on_generation = [&](double work) { progress.generation_done(work); };
+    const auto ended = experiments::execute_run(sweep, *options.run, {.part = options.part}, running);
+    progress.clear();
+    if (!ended) {
+        return ended.error();
+    }
+    if (!*ended) {
+        return exit_interrupted;
+    }
+    boost::json::object object = run_object(sweep, *options.run);
+    object["outcome"] = experiments::name_of((*ended)->outcome);
+    object["rows"] = (*ended)->rows;
+    if (options.json) {
+        print_json(object);
+    } else {
+        std::printf("%s: %llu rows\n", options.part.c_str(), static_cast<unsigned long long>((*ended)->rows));
     }
     return 0;
 }
@@ -307,9 +398,9 @@ Result<void> check_shared(const std::string& folder, runtime::Processes& process
 
 /// Executes `evod sweep`. Returns the exit status.
 Result<int> run_sweep(const SweepOptions& options, runtime::Processes& processes) {
-    if (processes.size() > 1 && (options.dry_run || options.gather || options.array_index)) {
+    if (processes.size() > 1 && (options.dry_run || options.gather || options.array_index || options.run)) {
         return refusal(base::RefusalCode::InvalidArgument,
-                       "--dry-run, --gather and --array-index are for one process: start it without mpirun");
+                       "--dry-run, --gather, --array-index and --run are for one process: start it without mpirun");
     }
     const auto sweep = load(options);
     if (auto agreed = agree(sweep ? Result<std::string>{plan_text(options, *sweep)} : sweep.error(), processes);
@@ -317,8 +408,15 @@ Result<int> run_sweep(const SweepOptions& options, runtime::Processes& processes
         return agreed.error();
     }
     if (options.dry_run) {
-        print_cells(options, *sweep);
+        if (options.json) {
+            print_json(plan_object(*sweep));
+        } else {
+            print_cells(options, *sweep);
+        }
         return 0;
+    }
+    if (options.run) {
+        return execute_one_run(options, *sweep);
     }
     const std::string out = options.out.empty() ? std::filesystem::path{options.file}.stem().string() : options.out;
     if (std::error_code error; options.gather && !std::filesystem::exists(out, error)) {
@@ -333,6 +431,10 @@ Result<int> run_sweep(const SweepOptions& options, runtime::Processes& processes
     }
     if (options.gather) {
         const auto missing = missing_runs(run_numbers(*sweep, {}), *folder, SweepFolder::Wanted::Rows);
+        if (!missing.empty() && options.json) {
+            print_missing_runs(missing, *sweep, *folder);
+            return 0;
+        }
         if (!missing.empty()) {
             return missing_runs_refusal(missing, *sweep, *folder);
         }
@@ -342,13 +444,17 @@ Result<int> run_sweep(const SweepOptions& options, runtime::Processes& processes
             return status;
         }
     }
+    if (options.array_index && options.json) {
+        print_json({{"cell", *options.array_index}});
+        return 0;
+    }
     if (options.array_index) {
         std::printf("cell %zu is done; after all cells, --gather writes %s\n", *options.array_index,
                     folder->table().c_str());
         return 0;
     }
     if (processes.rank() == 0) {
-        if (auto gathered = gather(*folder); !gathered) {
+        if (auto gathered = gather(*folder, options.json); !gathered) {
             return gathered.error();
         }
     }
@@ -394,13 +500,31 @@ void add_sweep_command(command_line::Command& app) {
             .excludes(with_jobs)
             .excludes(with_run_files)
             .excludes(with_array_index);
-    command.add_flag("--dry-run", &options.dry_run, "Only print cells and seeds; run nothing and write no file")
-        .excludes(with_gather)
-        .excludes(with_jobs)
-        .excludes(with_run_files)
-        .excludes(with_array_index);
-    command.footer("docs/CLUSTER.md describes sweep files and job arrays. Exit status: 0 all runs are done, 1 error or "
-                   "--gather found missing runs, 130 interrupted: the same command resumes the sweep.");
+    const auto with_dry_run =
+        command.add_flag("--dry-run", &options.dry_run, "Only print cells and seeds; run nothing and write no file")
+            .excludes(with_gather)
+            .excludes(with_jobs)
+            .excludes(with_run_files)
+            .excludes(with_array_index);
+    const auto with_part =
+        command.add_option("--part", &options.part, "File for the rows of --run, as in the folder parts of a sweep");
+    const auto with_run =
+        command
+            .add_option("--run", &options.run,
+                        "Run only the run with this index, from 0: cell × replicates + replicate; it needs no folder")
+            .check(any_number)
+            .needs(with_part)
+            .excludes(with_gather)
+            .excludes(with_jobs)
+            .excludes(with_run_files)
+            .excludes(with_array_index)
+            .excludes(with_dry_run);
+    with_part.needs(with_run);
+    add_json_option(command, options.json);
+    command.footer(
+        "docs/CLUSTER.md describes sweep files and job arrays. Exit status: 0 all runs are done, 1 error or "
+        "--gather found missing runs (with --json, 0: they are its result), 130 interrupted: the same command resumes "
+        "the sweep.");
     command.action([&] {
         const auto processes = runtime::join_processes(others_patience);
         if (!processes) {

@@ -49,7 +49,7 @@ std::vector<ProvenanceEntry> provenance_entries(const Sweep& sweep) {
     while (text.ends_with('\n')) {
         text.pop_back();
     }
-    return {{"evod", std::string{EVOD_VERSION} + ", " + run_file::build_text()},
+    return {{"evod", version_and_build()},
             {"model", std::to_string(simulation::model_version)},
             {"seed", std::to_string(sweep.seed.value)},
             {"runs", std::to_string(sweep.run_count()) + ": " + std::to_string(sweep.cells.size()) + " cells of " +
@@ -161,6 +161,10 @@ std::optional<RunEnd> parse_run_end(std::string_view line) {
 }
 
 } // namespace
+
+std::string version_and_build() {
+    return std::string{EVOD_VERSION} + ", " + run_file::build_text();
+}
 
 std::string_view name_of(Outcome outcome) {
     for (const auto& [of, name] : outcome_names) {

@@ -25,6 +25,9 @@ namespace evod::experiments {
 
 class AtomicFile;
 
+/// The version and the build of evod, as sweep.txt contains them.
+std::string version_and_build();
+
 /// How a run ended.
 struct RunEnd {
     evolution::Outcome outcome = evolution::Outcome::GenerationLimit;

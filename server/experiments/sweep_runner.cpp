@@ -81,12 +81,20 @@ Result<std::size_t> SweepRunner::execute(std::vector<std::size_t> runs) {
     std::atomic<std::size_t> finished = 0;
     std::mutex mutex; // guards first_error
     std::optional<Refusal> first_error;
+    SweepRunnerOptions of_runs = options_;
+    of_runs.stopped = [this] { return is_stopped(); };
     for_each_trial(
         runs.size(), options_.jobs,
         [&](std::size_t index) {
-            const auto done = execute(runs[index]);
+            const std::size_t run = runs[index];
+            RunFiles files{.part = folder_.part_of(run)};
+            if (options_.run_files) {
+                files.run_file = folder_.run_file_of(run);
+                files.name = folder_.name_of(run);
+            }
+            const auto done = execute_run(sweep_, run, files, of_runs);
             if (done) {
-                finished += *done;
+                finished += *done ? 1 : 0;
                 return;
             }
             const std::scoped_lock lock{mutex};
@@ -102,32 +110,32 @@ Result<std::size_t> SweepRunner::execute(std::vector<std::size_t> runs) {
     return finished.load();
 }
 
-/// Executes one run from beginning to end. Returns false if the run was stopped.
-Result<bool> SweepRunner::execute(std::size_t run) const {
-    const std::size_t cell = cell_of(run), replicate = run % sweep_.replicates;
-    const Parameters parameters = sweep_.parameters_of(cell);
+Result<std::optional<RunEnd>> execute_run(const Sweep& sweep, std::size_t run, const RunFiles& files,
+                                          const SweepRunnerOptions& options) {
+    const std::size_t cell = run / sweep.replicates, replicate = run % sweep.replicates;
+    const Parameters parameters = sweep.parameters_of(cell);
     const auto expected = work_of_run(parameters);
     const double generation_work = expected ? work_of_generation(parameters) : 0;
     double done = 0;
     simulation::World world{
-        parameters, replicate_seed(sweep_.seed, static_cast<std::uint32_t>(replicate)), {}, sweep_.schedule_of(cell)};
+        parameters, replicate_seed(sweep.seed, static_cast<std::uint32_t>(replicate)), {}, sweep.schedule_of(cell)};
     std::optional<RunWriter> writer;
-    if (options_.run_files) {
-        writer.emplace(folder_.run_file_of(run), folder_.name_of(run), options_.draw_run_id(), world);
+    if (!files.run_file.empty()) {
+        writer.emplace(files.run_file, files.name, options.draw_run_id(), world);
         if (auto followed = writer->follow(world); !followed) {
             return followed.error();
         }
     }
-    AtomicFile part{folder_.part_of(run)};
+    AtomicFile part{files.part};
     std::ostringstream rows;
-    replay::Table table{rows, replay::Table::Format::Csv, sweep_columns(sweep_)};
+    replay::Table table{rows, replay::Table::Format::Csv, sweep_columns(sweep)};
     rows.str({}); // removes the heading
     RunEnd end;
     base::InlineExecutor executor;
     while (world.outcome() == evolution::Outcome::Running && part.error().empty()) {
         do {
-            if (is_stopped()) {
-                return false;
+            if (options.stopped()) {
+                return std::optional<RunEnd>{};
             }
             world.advance_tick(executor);
             if (writer) {
@@ -137,12 +145,12 @@ Result<bool> SweepRunner::execute(std::size_t run) const {
             }
         } while (!world.generation_over());
         world.take_events();
-        write_generation(table, sweep_, run, world);
+        write_generation(table, sweep, run, world);
         end.rows += world.history().back().size();
         part.write(rows.str());
         rows.str({});
         done += generation_work;
-        options_.on_generation(generation_work);
+        options.on_generation(generation_work);
     }
     if (writer && part.error().empty()) {
         if (auto finished = writer->finish(); !finished) {
@@ -154,8 +162,8 @@ Result<bool> SweepRunner::execute(std::size_t run) const {
     if (auto finished = part.finish(); !finished) {
         return finished.error();
     }
-    options_.on_run(expected.value_or(0) - done);
-    return true;
+    options.on_run(expected.value_or(0) - done);
+    return std::optional{end};
 }
 
 } // namespace evod::experiments

@@ -24,9 +24,9 @@ double work_of_generation(const parameters::Parameters& parameters);
 std::optional<double> work_of_run(const parameters::Parameters& parameters);
 
 struct SweepRunnerOptions {
-    std::size_t jobs = 1;                  // >= 1
-    std::uint32_t rank = 0, processes = 1; // several processes that execute a sweep together
-    bool run_files = false;
+    std::size_t jobs = 1;                                 // >= 1
+    std::uint32_t rank = 0, processes = 1;                // several processes that execute a sweep together
+    bool run_files = false;                               // used by SweepRunner::execute()
     std::function<simulation::RunId()> draw_run_id = {};  // for run files
     std::function<bool()> stopped = [] { return false; }; // whether to stop; called in every tick
     /// The runner calls this function at the end of each generation, with the expected work of the generation.
@@ -35,6 +35,16 @@ struct SweepRunnerOptions {
     /// ended before its generation_limit.
     std::function<void(double work)> on_run = [](double) {};
 };
+
+/// The files of a run.
+struct RunFiles {
+    std::string part;
+    std::string run_file = {}, name = {}; // empty: no run file is written
+};
+/// Executes one run from beginning to end on this thread. Returns nullopt if options.stopped() returned true; then there
+/// are no files.
+base::Result<std::optional<RunEnd>> execute_run(const Sweep& sweep, std::size_t run, const RunFiles& files,
+                                                const SweepRunnerOptions& options);
 
 class SweepRunner {
   public:
@@ -57,7 +67,6 @@ class SweepRunner {
     std::size_t cell_of(std::size_t run) const { return run / sweep_.replicates; }
     bool is_stopped() const { return failed_ || options_.stopped(); }
     void sort_by_work(std::vector<std::size_t>& runs) const;
-    base::Result<bool> execute(std::size_t run) const;
 
     const Sweep& sweep_;
     const SweepFolder& folder_;

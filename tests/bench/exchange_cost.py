@@ -12,7 +12,6 @@ import json
 import math
 import os
 import pathlib
-import re
 import resource
 import subprocess
 import sys
@@ -108,13 +107,12 @@ def measure_scaling(folder, organisms, rounds):
         for _ in range(rounds):
             for kind, (processes, threads) in kinds.items():
                 before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-                output = started([folder / "evod", "run", file, "--seed", 1, "--threads", threads], processes)
+                output = started([folder / "evod", "run", file, "--json", "--seed", 1, "--threads", threads], processes)
                 used_s = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-                ticks_s, turnover_s = (float(re.search(words, output).group(1)) for words in
-                                       (r"\(([\d.]+) s in ticks\)", r"generations ([\d.]+) s"))
-                exchange = re.search(r"between processes [\d.]+ s, ([\d.]+) %", output)
-                speed = float(re.search(r"([\d.]+) M organism-ticks/s", output).group(1))
-                found = ticks_s + turnover_s, turnover_s, float(exchange.group(1)) if exchange else 0.0, speed, used_s
+                run = json.loads(output.splitlines()[-1])
+                whole_s = run["tick_s"] + run["turnover_s"]
+                speed = run["organism_ticks"] / run["tick_s"] / 1e6
+                found = whole_s, run["turnover_s"], 100 * run["exchange_s"] / whole_s, speed, used_s
                 best[kind] = min(best.get(kind, found), found)
     print(f"\n8 islands of {organisms} organisms, ring, one generation of {TICKS // 2} ticks")
     for kind, (seconds, turnover_s, exchange, speed, used_s) in best.items():

@@ -199,11 +199,11 @@ class Progress(unittest.TestCase):
                          [("run", 3, 3), ("sweep", 1.0, 1.0), ("comparison", 1.0, 1.0)])
 
     def test_progress_of_the_program_is_read(self):
-        report = "\\r 12 % of all generations \\033[K\\r50 % of all generations \\033[K\\r\\033[Kevod x: --seed: bad\\n"
         seen = []
         with tempfile.TemporaryDirectory() as folder:
             script = pathlib.Path(folder) / "evod"
-            lines = ("#!/bin/sh", f"printf '{report.replace('%', '%%')}' >&2", "printf '\\r3 of 4 runs' >&2", "exit 1", "")
+            lines = ("#!/bin/sh", """echo '{"progress":0.5}'""", """echo '{"progress":0.75}'""", "echo 'evod x: --seed: bad' >&2",
+                     "exit 1", "")
             script.write_text("\n".join(lines))
             script.chmod(0o700)
             with self.assertRaises(evod.ProgramFailed) as raised:

@@ -1,5 +1,6 @@
 """Results are frozen dataclasses with states, names of genes, and tables."""
 import dataclasses
+import inspect
 import pickle
 import unittest
 
@@ -7,7 +8,8 @@ import numpy
 
 import evod
 from evod import plans
-from evod.results import _CLASSES, _STATES, result
+from evod.conversion import result
+from evod.results import CLASSES, STATES
 from evod.v1 import commands_pb2, stream_pb2, world_pb2
 
 SMALL = {"island_count": 2, "population_size": 12, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
@@ -16,20 +18,28 @@ SMALL = {"island_count": 2, "population_size": 12, "generation_s": 2, "migration
 class Conversion(unittest.TestCase):
     def test_every_field_of_the_protocol_is_converted(self):
         messages = {**world_pb2.DESCRIPTOR.message_types_by_name, **commands_pb2.DESCRIPTOR.message_types_by_name}
-        for name, kind in _CLASSES.items():
+        for name, kind in CLASSES.items():
             fields = [field.name for field in dataclasses.fields(kind)]
             left_out = {evod.results.EntityIds: {"by"},  # in events only
                         evod.results.Descendant: {"more_from_second"}}.get(kind, set())  # part of from_second
             self.assertEqual(set(fields), set(messages[name].fields_by_name) - left_out, name)
 
     def test_every_state_has_its_name(self):
-        for name, state in _STATES.items():
+        for name, state in STATES.items():
             module = next(m for m in (world_pb2, commands_pb2) if name in m.DESCRIPTOR.enum_types_by_name)
             values = {v.name: v.number for v in module.DESCRIPTOR.enum_types_by_name[name].values if v.number}
             prefix = len(min(values, key=len)) and "".join("_" + c if c.isupper() else c.upper() for c in name)[1:] + "_"
             self.assertEqual({prefix + member.name: member.value for member in state}, values)
         details = {v.name: v.number for v in stream_pb2.Detail.DESCRIPTOR.values if v.number}
         self.assertEqual({f"DETAIL_{member.name}": member.value for member in evod.Detail}, details)
+
+    def test_comments_are_those_of_the_protocol(self):
+        self.assertEqual(evod.Pick.__doc__, "One selection of a parent.")
+        source = inspect.getsource(evod.results)
+        for line in ("outcome: Outcome | None  #: None: the run has not ended", "state: RunState\n",
+                     "replay: ReplayRange | None  #: None: this is a live world",
+                     "reason: str  #: text for the user; empty in StorageState.KEEPS_UP"):
+            self.assertIn(f"    {line}", source)
 
     def test_states_of_newer_servers_are_kept(self):
         info = result(world_pb2.WorldInfo(state=77, speed=world_pb2.Speed(real_time_factor=2)))

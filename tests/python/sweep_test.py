@@ -49,14 +49,14 @@ def processes():
 
 
 def is_run(process):
-    """Whether a process is an `evod run` that has not ended."""
+    """Whether a process is a run of a sweep that has not ended."""
     with contextlib.suppress(OSError):
-        return b"\0run\0" in pathlib.Path(f"/proc/{process}/cmdline").read_bytes()
+        return b"\0--run\0" in pathlib.Path(f"/proc/{process}/cmdline").read_bytes()
     return False
 
 
 def runs_below():
-    """The processes `evod run` that this process has started, also those of its workers."""
+    """The processes `evod sweep --run` that this process has started, also those of its workers."""
     return list(filter(is_run, waiting.descendants()))
 
 
@@ -202,7 +202,7 @@ class Failures(Temporary):
     def fails_in_cell_1(self):
         """A program that fails in one run of a sweep of mutation_chance, and is evod otherwise."""
         path = self.folder / "evod"
-        path.write_text(f'#!/bin/sh\ncase "$*" in\n  *"run "*mutation_chance=0.2*) echo "evod: no memory is left" >&2; exit 1\n'
+        path.write_text(f'#!/bin/sh\ncase "$*" in\n  *"--run 1 "*) echo "evod: no memory is left" >&2; exit 1\n'
                         f'esac\nexec "{PROGRAM}" "$@"\n')
         path.chmod(0o700)
         return path

@@ -14,7 +14,7 @@ server. `evod.aio` has the same classes for asyncio. `evod.v1` contains the mess
 `evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call. `evod.run_table()` is made for tasks
 of an executor.
 
-evod.lab, evod.experiments and evod.version are generated when the package is built (setup.py).
+evod.results, evod.lab, evod.experiments and evod.version are generated when the package is built (setup.py).
 """
 from evod.errors import (
     Aborted,

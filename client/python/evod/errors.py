@@ -180,7 +180,7 @@ class ProgramFailed(Error, RuntimeError):
     """The program evod did not start, or failed. The message contains its own message."""
 
 
-_OF_CODE: dict[int, type[Error]] = {
+_OF_CODE: dict[int | None, type[Error]] = {
     kind._code: kind
     for kind in (InvalidArgument, NotFound, AlreadyExists, PermissionDenied, ResourceExhausted, FailedPrecondition, Aborted,
                  Unimplemented, Unavailable, Unauthenticated, DamagedData)
@@ -227,7 +227,9 @@ def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
     violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
     message = _with_arguments(printable(status.message))
-    kind = AnswerExpired if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD else _OF_CODE.get(status.code, Error)
+    kind: type[Error] = _OF_CODE.get(status.code, Error)
+    if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD:
+        kind = AnswerExpired
     error = kind(message, violations, status.code)
     error.reason = status.reason
     return error

@@ -7,8 +7,9 @@ from typing import Any, Iterable, Sequence
 import numpy
 import numpy.typing
 
+from evod.conversion import result
 from evod.genes import GENE_NAMES, Genes
-from evod.results import GenerationStatistics, GeneStatistics, result
+from evod.results import GenerationStatistics, GeneStatistics
 from evod.tables import html_table, pandas
 from evod.v1 import commands_pb2, world_pb2
 

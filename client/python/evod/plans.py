@@ -17,6 +17,7 @@ import numpy
 import numpy.typing
 
 from evod import snapshot_decoder
+from evod.conversion import result
 from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
 from evod.errors import (
     DamagedData,
@@ -36,7 +37,7 @@ from evod.errors import (
 from evod.genes import GENE_NAMES, Genes
 from evod.generations import Generation, History, Life, Population, gene_count_of, generations_of, population_of
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.results import EntityIds, result
+from evod.results import EntityIds
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
 

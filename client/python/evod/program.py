@@ -1,13 +1,13 @@
 """Finds the program evod, runs its subcommands, and converts its error messages to exceptions."""
 from __future__ import annotations
 
-import errno
+import json
 import os
 import re
 import selectors
 import shutil
 import subprocess
-from typing import IO, Callable, Container, Iterator, Mapping, Sequence
+from typing import IO, Any, Callable, Container, Iterator, Mapping, Sequence
 
 from evod.errors import Error, FileNotFound, InvalidArgument, ProgramFailed, Violation
 
@@ -18,8 +18,6 @@ _UNKNOWN = re.compile(
 )
 _SEE_HELP = re.compile(r"^See evod( [a-z]+)? --help$")
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
-_PROGRESS = re.compile(r"\r *(?:(\d+) of (\d+) runs|(\d+) % of)")
-_CLEARED = re.compile(r"\r[^\r\n]*\x1b\[K")  # a progress line, or its removal
 _OF_MPIRUN = ("OMPI_", "PMIX_", "PMI_")  # the first letters of the variables that mpirun and srun set for their processes
 
 
@@ -65,15 +63,22 @@ def _argument(option: str) -> str:
     return option.replace("-", "_")
 
 
+def result_in(printed: str) -> Any:
+    """Returns the result that the program printed with --json: the last line. Raises ProgramFailed if there is none."""
+    try:
+        return json.loads(printed.rstrip("\n").rpartition("\n")[2])
+    except ValueError as error:
+        raise ProgramFailed("cannot read the output of evod: the program and the package must have the same version") from error
+
+
 class Program:
     """One execution of the program, with its output.
 
     If this process is killed, the standard output of the program has no reader, and the next line that it prints ends it. So
-    `evod run` ends after at most one generation.
+    `evod run` and `evod sweep --run --json` end soon after a generation.
 
     hidden       as for `failure`.
-    on_progress  called with the finished share of the work, 0 to 1. The program prints its progress only on a terminal, so
-                 its standard error is then a pseudo-terminal.
+    on_progress  called with the finished share of the work, 0 to 1, which the program prints with --json.
     accepted     the statuses of success.
     """
 
@@ -91,36 +96,29 @@ class Program:
 
     def run(self) -> str:
         """Runs the program and returns its standard output. Raises `failure` if its status is not accepted."""
-        reading_end, writing_end = os.openpty() if self._on_progress else os.pipe()
-        output_end, output_writing_end = os.pipe()
-        printed, text = "", b""
-        with os.fdopen(reading_end, "rb", buffering=0) as errors, os.fdopen(output_end, "rb", buffering=0) as output:
-            try:
-                self._process = process = subprocess.Popen(
-                    self._command,
-                    stdin=subprocess.DEVNULL,
-                    stdout=output_writing_end,
-                    stderr=writing_end,
-                    env=environment(),
-                )
-            finally:
-                os.close(writing_end)
-                os.close(output_writing_end)
+        printed, text, shown = b"", b"", 0
+        with subprocess.Popen(
+            self._command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment()
+        ) as process:
+            self._process = process
+            assert process.stdout is not None and process.stderr is not None
             try:
                 if self._stopped:
                     process.terminate()
-                for file, part in _parts_of(errors, output):
-                    if file is output:
-                        text += part
-                    else:
-                        printed += part.decode(errors="replace")
-                        self._report(part.decode(errors="replace"))
+                for file, part in _parts_of(process.stderr, process.stdout):
+                    if file is process.stderr:
+                        printed += part
+                        continue
+                    text += part
+                    if self._on_progress and (end := text.rfind(b"\n") + 1) > shown:
+                        self._report(text[shown:end])
+                        shown = end
                 process.wait()
             except BaseException:
                 self.stop()
                 raise
         if process.returncode not in self._accepted:
-            raise failure(_CLEARED.sub("", printed.replace("\r\n", "\n")), self._hidden)
+            raise failure(printed.decode(errors="replace"), self._hidden)
         if self._on_progress:
             self._on_progress(1.0)
         return text.decode(errors="replace")
@@ -132,10 +130,11 @@ class Program:
             self._process.terminate()
             self._process.wait()
 
-    def _report(self, part: str) -> None:
-        if self._on_progress and (reported := _PROGRESS.findall(part)):
-            done, total, percent = reported[-1]
-            self._on_progress(int(done) / int(total) if total else int(percent) / 100)
+    def _report(self, lines: bytes) -> None:
+        """Reports the last progress in some lines of the program."""
+        progress = [line["progress"] for line in map(json.loads, lines.splitlines()) if "progress" in line]
+        if self._on_progress and progress:
+            self._on_progress(progress[-1])
 
 
 def _parts_of(*files: IO[bytes]) -> Iterator[tuple[IO[bytes], bytes]]:
@@ -145,16 +144,7 @@ def _parts_of(*files: IO[bytes]) -> Iterator[tuple[IO[bytes], bytes]]:
             selector.register(file, selectors.EVENT_READ, file)
         while selector.get_map():
             for key, _ in selector.select():
-                if part := _read(key.data):
+                if part := os.read(key.fd, 1 << 16):
                     yield key.data, part
                 else:
                     selector.unregister(key.data)
-
-
-def _read(file: IO[bytes]) -> bytes:
-    try:
-        return file.read(1 << 16)
-    except OSError as error:
-        if error.errno == errno.EIO:  # the other end of the pseudo-terminal is closed
-            return b""
-        raise

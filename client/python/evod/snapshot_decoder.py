@@ -8,8 +8,9 @@ from typing import Any, Mapping, Sequence
 
 import numpy
 
+from evod.conversion import result
 from evod.errors import DamagedData
-from evod.results import Detail, RunState, result
+from evod.results import Detail, RunState
 from evod.snapshots import HEADING_STEPS, STEPS_PER_PX, Array, Boxes, Columns, Items, Organisms, Snapshot, Tile
 from evod.v1 import stream_pb2
 

@@ -15,14 +15,6 @@ float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, s
     return place.x + size_of(text, font, wrap_width).x;
 }
 
-void write_centred(ImDrawList& list, const ImFont& font, ImVec2 centre, Colour colour, std::string_view text,
-                   float scale) {
-    const ImVec2 size = size_of(text, font);
-    list.AddText(&font, scale * font.FontSize,
-                 {std::floor(centre.x - scale * size.x / 2), std::floor(centre.y - scale * size.y / 2)}, ink(colour),
-                 text.data(), text.data() + text.size());
-}
-
 void write_to_the_left(ImDrawList& list, const ImFont& font, ImVec2 right, Colour colour, std::string_view text) {
     write(list, font, {right.x - size_of(text, font).x, right.y}, colour, text);
 }

@@ -28,9 +28,6 @@ ImVec2 size_of(std::string_view text, const ImFont& font, float wrap_width = 0);
 /// of the end of the text.
 float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, std::string_view text,
             float wrap_width = 0);
-/// scale  size of the text, relative to that of the font
-void write_centred(ImDrawList& list, const ImFont& font, ImVec2 centre, Colour colour, std::string_view text,
-                   float scale = 1);
 void write_to_the_left(ImDrawList& list, const ImFont& font, ImVec2 right, Colour colour, std::string_view text);
 
 } // namespace evod::viewer

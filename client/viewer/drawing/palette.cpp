@@ -143,10 +143,4 @@ Colour at(Ramp ramp, double share) {
             between(from.blue, to.blue, beyond)};
 }
 
-Colour text_on(Colour paper) {
-    const double opaque = paper.alpha / 255.0;
-    const double light = (0.299 * paper.red + 0.587 * paper.green + 0.114 * paper.blue) * opaque + 240 * (1 - opaque);
-    return light > 140 ? text : note_text;
-}
-
 } // namespace evod::viewer::palette

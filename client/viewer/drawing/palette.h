@@ -142,18 +142,10 @@ constexpr Colour plot_mark{74, 58, 150}; // a change of parameters
 constexpr Colour explicit_euler = kinds[5];
 constexpr Colour symplectic_euler = kinds[4];
 
-// Colours of the glass box, the panel that shows how a generation was bred.
+// Colours of the family tree.
 constexpr Colour first_parent = kinds[4];
 constexpr Colour second_parent = kinds[0];
-constexpr Colour glass_current{206, 16, 110};
-constexpr Colour glass_mutated{122, 36, 150};
-constexpr Colour glass_elite{20, 20, 24};
-constexpr Colour glass_survivor{104, 104, 112};
-constexpr Colour glass_child{184, 184, 192};
-
-/// Returns black or white, whichever has more contrast with `paper`. If `paper` is translucent, it is assumed to lie on
-/// a light background.
-Colour text_on(Colour paper);
+constexpr Colour selected_line{206, 16, 110}; // of the selected organism and its ancestors
 
 } // namespace palette
 } // namespace evod::viewer

@@ -156,20 +156,17 @@ void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
     });
 }
 
-void IslandView::request_picks(ViewedWorld& world, Clock::time_point now) {
-    const evod::v1::Replay* replay = world.replay.info();
-    const std::uint64_t newest = replay != nullptr ? replay->last_generation() : generation_;
-    selected_has_bred_ = organism_history_->generation() < newest;
-    auto wanted = organism_history_->wanted_picks(selected_has_bred_);
-    awaits_picks_ = wanted.has_value();
-    if (!wanted || picks_poll_.is_unsupported() || !picks_poll_.due(world, now)) {
+void IslandView::request_parents(ViewedWorld& world, Clock::time_point now) {
+    auto wanted = organism_history_->wanted_parent();
+    awaits_parents_ = wanted.has_value();
+    if (!wanted || parents_poll_.is_unsupported() || !parents_poll_.due(world, now)) {
         return;
     }
     wanted->set_world(world.feed.world());
     wanted->set_island(world.feed.island());
     evod::v1::Request request;
     *request.mutable_get_breeding() = *wanted;
-    picks_poll_.send(world, std::move(request), now, [this, wanted = *wanted](const evod::v1::Response* response) {
+    parents_poll_.send(world, std::move(request), now, [this, wanted = *wanted](const evod::v1::Response* response) {
         if (response != nullptr && organism_history_) {
             organism_history_->add(wanted, response->breeding());
         }
@@ -279,7 +276,7 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
         organism_history_.emplace(*selected, generation_);
         organism_history_->add(*snapshot);
         organism_poll_.reset();
-        picks_poll_.reset();
+        parents_poll_.reset();
         organism_tick_ = ~std::uint64_t{0};
     }
     lineage_poll_->update(world, lineage_wanted_ || options.colour_by == ColourBy::Lineage, now);
@@ -295,7 +292,7 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
         request_organism(world, now);
     }
     if (organism_history_) {
-        request_picks(world, now);
+        request_parents(world, now);
     }
     update_stream(world, camera, now);
 }

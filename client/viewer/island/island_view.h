@@ -20,7 +20,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace evod::viewer {
@@ -99,17 +98,8 @@ class IslandView {
     /// opens a replay at the start of its generation or seeks there. The organism is selected when its generation
     /// appears.
     void go_to(ViewedWorld& world, const OrganismPlace& organism);
-    /// Makes the glass box show the first pick of an organism of the chosen island.
-    void show_pick(const OrganismPlace& organism) { wanted_pick_ = organism; }
-    bool wants_pick() const { return wanted_pick_.has_value(); }
-    /// Returns the organism of the last show_pick(), once.
-    std::optional<OrganismPlace> take_wanted_pick() { return std::exchange(wanted_pick_, std::nullopt); }
-    /// Returns why the picks of the selected organism are unknown, as a sentence; empty if they are known or requested.
-    const std::string& picks_problem() const { return picks_poll_.problem(); }
-    /// Returns whether picks of the selected organism or of its parents are being requested.
-    bool awaits_picks() const { return awaits_picks_ && picks_problem().empty(); }
-    /// Returns whether the generation of the selected organism has bred.
-    bool selected_has_bred() const { return selected_has_bred_; }
+    /// Returns whether parents of the selected organism are being requested.
+    bool awaits_parents() const { return awaits_parents_ && parents_poll_.problem().empty(); }
 
     // Functions that return data received from the server or derived from it.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
@@ -168,7 +158,7 @@ class IslandView {
     void take_population(std::uint32_t island);
     void find_families(const Population& population, std::uint32_t island);
     void request_organism(ViewedWorld& world, Clock::time_point now);
-    void request_picks(ViewedWorld& world, Clock::time_point now);
+    void request_parents(ViewedWorld& world, Clock::time_point now);
     void keep_selection(ViewedWorld& world);
     void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
@@ -180,8 +170,8 @@ class IslandView {
     GeneGroups gene_groups_;
     PopulationPoll population_poll_{poll_interval};
     Poll organism_poll_{poll_interval};
-    Poll picks_poll_;
-    bool awaits_picks_ = false, selected_has_bred_ = false;
+    Poll parents_poll_;
+    bool awaits_parents_ = false;
     std::uint64_t taken_count_ = 0;                         // complete populations received
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
     Families families_;
@@ -211,7 +201,6 @@ class IslandView {
         bool out_of_sight = false; // another generation, island or world is shown
     };
     std::optional<Kept> kept_;
-    std::optional<OrganismPlace> wanted_pick_;
     StreamedRegion region_;
     bool in_part_ = false; // whether the island is large and therefore streamed in part
 };

@@ -70,15 +70,6 @@ double axis_end(double most) {
     return step * std::max(std::ceil(most / step), 1.0);
 }
 
-std::string shown_picks(const std::string& subject, const OrganismHistory::Picks& picks) {
-    std::string text = subject;
-    if (picks.migrant) {
-        text += print(" (a copy of organism %u of island %u)", picks.migrant->organism(), picks.migrant->island());
-    }
-    return text + " was picked " + with_separators(picks.count) + " of " + with_separators(picks.all) +
-           (picks.all == 1 ? " time" : " times") + ", expected " + three_digits(picks.expected) + ".";
-}
-
 std::string shown_parents(const evod::v1::OrganismInfo& info, OrganismHistory::Origin origin) {
     if (info.has_placed_tick()) {
         return "No parents: placed by a user after tick " + with_separators(info.placed_tick()) + " of the generation";
@@ -157,19 +148,6 @@ void OrganismPanel::build_freeze(Context& context, const OrganismHistory& histor
     widgets::explain("Stores the organism's genes in the panel Freezer (F10), to place it in any world later.");
 }
 
-void OrganismPanel::build_own_picks(Context& context, const OrganismHistory& history) {
-    const OrganismHistory::Picks* picks = history.picks();
-    ImGui::BeginDisabled(picks == nullptr);
-    if (widgets::button("Show its picks")) {
-        context.island_view.show_pick({history.info()->island(), history.generation(), history.id()});
-    }
-    ImGui::EndDisabled();
-    widgets::explain(picks != nullptr                           ? "Opens the glass box at its first pick."
-                     : !context.island_view.selected_has_bred() ? "Its generation has not bred yet."
-                     : context.island_view.awaits_picks()       ? "Loading …"
-                                                                : "Its picks are unknown.");
-}
-
 void OrganismPanel::build(Context& context) {
     const OrganismHistory* history = context.island_view.organism_history();
     if (history == nullptr) {
@@ -190,7 +168,7 @@ void OrganismPanel::build(Context& context) {
     }
     build_life(context, *history);
     ImGui::Separator();
-    build_picks(context, *history);
+    build_parents(context, *history);
     ImGui::Separator();
     build_health(history->health());
     ImGui::Separator();
@@ -201,8 +179,7 @@ void OrganismPanel::build(Context& context) {
 
 /// Builds the panel while no organism is selected.
 void OrganismPanel::build_choice(Context& context) {
-    widgets::small_text("Click an organism to inspect it: its genes, its parents and why they were picked.",
-                        palette::text);
+    widgets::small_text("Click an organism to inspect it: its genes, its parents and its offspring.", palette::text);
     const codec::ReceivedSnapshot* snapshot = context.world.feed.snapshot();
     if (snapshot == nullptr || snapshot->entities->organisms.id.empty()) {
         return;
@@ -246,15 +223,11 @@ void OrganismPanel::build_life(Context& context, const OrganismHistory& history)
         }
     }
     build_freeze(context, history);
-    ImGui::SameLine();
-    build_own_picks(context, history);
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
 }
 
-/// Answers the question why this organism exists, and whether it was picked. The buttons are above the texts, so that they
-/// do not move under the mouse when the numbers arrive.
-void OrganismPanel::build_picks(Context& context, const OrganismHistory& history) {
+void OrganismPanel::build_parents(Context& context, const OrganismHistory& history) {
     const evod::v1::OrganismInfo& info = *history.info();
     std::vector<std::uint32_t> parents(info.parents().begin(), info.parents().end());
     if (parents.size() == 2 && parents[0] == parents[1]) {
@@ -264,42 +237,23 @@ void OrganismPanel::build_picks(Context& context, const OrganismHistory& history
         build_parent(context, history, parent);
     }
     widgets::small_text(shown_parents(info, history.origin()), palette::text);
-    for (const std::uint32_t parent : parents) {
-        if (const OrganismHistory::Picks* picks = history.picks_of_parent(parent)) {
-            widgets::small_text(shown_picks("Its parent " + std::to_string(parent), *picks), palette::text);
-        }
-    }
-    if (const OrganismHistory::Picks* picks = history.picks()) {
-        widgets::small_text(shown_picks("It", *picks), palette::text);
-    }
-    if (!context.island_view.picks_problem().empty()) {
-        widgets::small_text("The picks are unknown: " + context.island_view.picks_problem() + ".");
-    }
 }
 
 void OrganismPanel::build_parent(Context& context, const OrganismHistory& history, std::uint32_t parent) {
     const evod::v1::OrganismInfo& info = *history.info();
-    const OrganismHistory::Picks* picks = history.picks_of_parent(parent);
-    const std::string id = std::to_string(parent);
-    // Only the picks contain whether the parent is a copy of an organism of another island.
-    ImGui::BeginDisabled(picks == nullptr && context.island_view.awaits_picks());
-    if (widgets::button(("Go to parent " + id).c_str())) {
+    const OrganismHistory::Parent* known = history.parent(parent);
+    // Only the breeding contains whether the parent is a copy of an organism of another island.
+    ImGui::BeginDisabled(known == nullptr && context.island_view.awaits_parents());
+    if (widgets::button(("Go to parent " + std::to_string(parent)).c_str())) {
         OrganismPlace place{info.island(), history.generation() - 1, parent};
-        if (picks != nullptr && picks->migrant) {
-            place.island = picks->migrant->island();
-            place.id = picks->migrant->organism();
+        if (known != nullptr && known->migrant) {
+            place.island = known->migrant->island();
+            place.id = known->migrant->organism();
         }
         context.island_view.go_to(context.world, place);
     }
     ImGui::EndDisabled();
     widgets::explain("Shows the parent alive, in a replay of its generation. P returns to the live world.");
-    ImGui::SameLine();
-    ImGui::BeginDisabled(picks == nullptr);
-    if (widgets::button(("Why " + id + "?").c_str())) {
-        context.island_view.show_pick({info.island(), history.generation() - 1, parent});
-    }
-    ImGui::EndDisabled();
-    widgets::explain("Opens the glass box at the first pick of this parent.");
 }
 
 void OrganismPanel::build_genes(Context& context, const OrganismHistory& history) {

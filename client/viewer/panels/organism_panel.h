@@ -1,5 +1,5 @@
-// OrganismPanel: shows the selected organism: how often its parents were picked, its health, choices and offspring, and
-// its genes within the range of its generation. Without a selection, it offers the healthiest organisms.
+// OrganismPanel: shows the selected organism: its parents, its health, choices and offspring, and its genes within the
+// range of its generation. Without a selection, it offers the healthiest organisms.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -22,19 +22,14 @@ class OrganismPanel : public Panel {
 
   private:
     void build_freeze(Context& context, const OrganismHistory& history);
-    void build_own_picks(Context& context, const OrganismHistory& history);
     void build_choice(Context& context);
     void build_life(Context& context, const OrganismHistory& history);
     bool build_brain_of(const Context& context, const evod::v1::OrganismInfo& info);
-    void build_picks(Context& context, const OrganismHistory& history);
+    void build_parents(Context& context, const OrganismHistory& history);
     void build_parent(Context& context, const OrganismHistory& history, std::uint32_t parent);
     void build_genes(Context& context, const OrganismHistory& history);
     void build_offspring(const OrganismHistory& history);
 };
-/// Returns how often an organism was picked: "Its parent 45 was picked 3 of 25 times, expected 1.71."
-///
-/// subject  begin of the sentence: "Its parent 45"
-std::string shown_picks(const std::string& subject, const OrganismHistory::Picks& picks);
 /// Returns the end of the axis for values from 0 to `most`: the next multiple of a round number.
 double axis_end(double most);
 

@@ -54,16 +54,9 @@ class Panel {
 
     /// The size of the panel's own window until the user changes it.
     virtual Size first_size() const { return {400, 480}; }
-    /// The width in pixels at scale 1 to which the sidebar grows while it shows this panel, if the window is wide enough.
-    virtual float width_min() const { return 0; }
-    /// The height in pixels at scale 1 that the panel needs. If the window is too low, the sidebar shows only the run
-    /// controls above this panel.
-    virtual float height_min() const { return 0; }
 
     /// The keys that the panel handles. While the panel has the focus, all other keys still go to the main window.
     virtual std::span<const Key> keys() const { return {}; }
-    /// Whether pressing these keys would have an effect now.
-    virtual bool takes_keys() const { return true; }
 
     /// Builds the widgets. Called between ImGui::Begin() and ImGui::End(), only while the panel is shown.
     virtual void build(Context& context) = 0;

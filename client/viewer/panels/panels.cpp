@@ -2,7 +2,6 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/panels/breeding/breeding_panel.h"
 #include "client/viewer/panels/family_tree/family_tree_panel.h"
 #include "client/viewer/panels/freezer_panel.h"
 #include "client/viewer/panels/organism_panel.h"
@@ -36,21 +35,17 @@ ImVec2 size_of(Rectangle place) {
 
 } // namespace
 
-std::string panel_key(std::size_t index) {
-    return index < panel_key_count ? "F" + std::to_string(index + 2) : "";
-}
-
+// F1 shows the help, F12 collapses the sidebar. F8 belonged to a panel that is now in the page (page_panels.cpp).
 Panels::Panels() {
-    places_.push_back({std::make_unique<WorldsPanel>()});
-    places_.push_back({std::make_unique<RunPanel>()});
-    places_.push_back({std::make_unique<ParametersPanel>()});
-    places_.push_back({std::make_unique<ViewPanel>()});
-    places_.push_back({std::make_unique<OrganismPanel>()});
-    places_.push_back({std::make_unique<PlotsPanel>()});
-    places_.push_back({std::make_unique<BreedingPanel>()});
-    places_.push_back({std::make_unique<PhysicsPanel>()});
-    places_.push_back({std::make_unique<FreezerPanel>()});
-    places_.push_back({std::make_unique<FamilyTreePanel>()});
+    places_.push_back({std::make_unique<WorldsPanel>(), 2});
+    places_.push_back({std::make_unique<RunPanel>(), 3});
+    places_.push_back({std::make_unique<ParametersPanel>(), 4});
+    places_.push_back({std::make_unique<ViewPanel>(), 5});
+    places_.push_back({std::make_unique<OrganismPanel>(), 6});
+    places_.push_back({std::make_unique<PlotsPanel>(), 7});
+    places_.push_back({std::make_unique<PhysicsPanel>(), 9});
+    places_.push_back({std::make_unique<FreezerPanel>(), 10});
+    places_.push_back({std::make_unique<FamilyTreePanel>(), 11});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
     }
@@ -59,6 +54,11 @@ Panels::Panels() {
 std::size_t Panels::tab() const {
     const auto found = std::ranges::find(titles_, settings_.tab);
     return found == titles_.end() ? 0 : static_cast<std::size_t>(found - titles_.begin());
+}
+
+std::optional<std::size_t> Panels::panel_at(unsigned function_key) const {
+    const auto found = std::ranges::find(places_, function_key, &Place::function_key);
+    return found == places_.end() ? std::nullopt : std::optional{static_cast<std::size_t>(found - places_.begin())};
 }
 
 void Panels::set(SidebarSettings settings) {
@@ -113,7 +113,7 @@ bool Panels::close_front() {
 }
 
 bool Panels::handles(const sf::Event::KeyEvent& key) const {
-    return keyboard_ && shown(*keyboard_) && places_[*keyboard_].panel->takes_keys() && !key.alt && !key.system &&
+    return keyboard_ && shown(*keyboard_) && !key.alt && !key.system &&
            std::ranges::any_of(keys_of(*keyboard_), [&](const Panel::Key& handled) {
                return handled.key == key.code && handled.control == key.control && handled.shift == key.shift;
            });
@@ -134,10 +134,7 @@ double Panels::width(unsigned window_pixels, double scale) const {
     if (settings_.collapsed) {
         return std::round(sidebar_collapsed * scale);
     }
-    const Place& place = places_[tab()];
-    // A panel widens the sidebar to at most a third of the window.
-    const float wanted = place.detached ? 0 : std::min(place.panel->width_min(), float(window_pixels / scale / 3));
-    return sidebar_pixels(std::max(settings_.width, wanted) * scale, window_pixels, scale);
+    return sidebar_pixels(settings_.width * scale, window_pixels, scale);
 }
 
 void Panels::build(Panel::Context context, Rectangle sidebar) {
@@ -159,9 +156,6 @@ void Panels::build(Panel::Context context, Rectangle sidebar) {
         build_collapsed(sidebar, context.gui.scale());
     } else {
         build_sidebar(context, sidebar);
-    }
-    if (context.island_view.wants_pick()) {
-        show(BreedingPanel::name);
     }
     for (std::size_t i = 0; i < places_.size(); ++i) {
         if (places_[i].detached) {
@@ -224,8 +218,7 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
     summary_.build_title(context.world);
     build_corner(scale);
     constexpr float summary_height = 345; // with the tabs, in pixels at scale 1
-    const float wanted_height = places_[tab()].detached ? 0 : places_[tab()].panel->height_min();
-    summary_.build(context, static_cast<float>(sidebar.height) >= (wanted_height + summary_height) * scale);
+    summary_.build(context, static_cast<float>(sidebar.height) >= summary_height * scale);
     ImGui::Separator();
     context.gui.widget_positions().begin_panel("Tabs");
     build_tabs(context.gui);
@@ -272,7 +265,7 @@ void Panels::build_tabs(const Gui& gui) {
         }
         ImGui::PopStyleColor(2);
         widgets::mark(titles_[i]);
-        widgets::explain(std::string{titles_[i]} + " (" + panel_key(i) + ")");
+        widgets::explain(std::string{titles_[i]} + " (" + key_of(i) + ")");
         if (i + 1 < end) {
             ImGui::SameLine();
         }

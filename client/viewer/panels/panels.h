@@ -1,5 +1,5 @@
 // Panels: the sidebar at the right of the window. It contains the summary of the focused world, the run controls, and
-// one panel at a time, chosen by a tab or by its key (F2 to F11). A detached panel is a window of its own over the
+// one panel at a time, chosen by a tab or by its function key. A detached panel is a window of its own over the
 // worlds; closing this window returns the panel to the sidebar.
 //
 // Owner        WindowRenderer.
@@ -26,11 +26,6 @@
 #include <vector>
 
 namespace evod::viewer {
-
-/// Number of panels that have a key, F2 to F11. F1 shows the help, F12 collapses the sidebar.
-constexpr std::size_t panel_key_count = 10;
-/// The name of the panel's key: "F2" for the first panel; empty for panels without a key.
-std::string panel_key(std::size_t index);
 
 /// What evoview stores between two starts.
 struct SidebarSettings {
@@ -60,6 +55,10 @@ class Panels {
     /// Call when evoview has connected to another server. Every panel clears its data; places and tab stay.
     void begin_session();
 
+    /// The panel with this function key, such as 4 for F4; nullopt: none.
+    std::optional<std::size_t> panel_at(unsigned function_key) const;
+    /// The name of the panel's key: "F2" for the first panel.
+    std::string key_of(std::size_t index) const { return "F" + std::to_string(places_[index].function_key); }
     /// The titles of all panels, in the order of their keys.
     const std::vector<std::string_view>& titles() const { return titles_; }
     std::span<const Panel::Key> keys_of(std::size_t index) const { return places_[index].panel->keys(); }
@@ -74,7 +73,7 @@ class Panels {
     void set(SidebarSettings settings);
     void set_tour_seen() { settings_.tour_seen = true; }
 
-    /// The width of the sidebar in pixels, in a window of this width. A panel that needs more room widens it.
+    /// The width of the sidebar in pixels, in a window of this width.
     double width(unsigned window_pixels, double scale) const;
 
     /// Builds the sidebar and the detached panels. Call between Gui::begin() and Gui::draw().
@@ -85,6 +84,7 @@ class Panels {
   private:
     struct Place {
         std::unique_ptr<Panel> panel;
+        unsigned function_key = 0;
         bool detached = false;
         bool to_front = false; // give the panel the keyboard in the next frame
         int built = -1;        // the last frame of Dear ImGui in which it was built

@@ -67,7 +67,6 @@ constexpr std::pair<std::string_view, std::string_view> gestures[] = {
 };
 
 constexpr Key::Key first_panel_key = Key::F2, last_panel_key = Key::F11;
-static_assert(last_panel_key - first_panel_key + 1 == panel_key_count);
 
 constexpr std::pair<Key::Key, std::string_view> names[] = {
     {Key::Space, "Space"},
@@ -101,10 +100,9 @@ void add(std::vector<HelpLine>& lines, const std::string& keys, std::string_view
 
 } // namespace
 
-std::optional<std::size_t> panel_of(Action action) {
-    return action < Action::FirstPanel
-               ? std::nullopt
-               : std::optional{static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::FirstPanel)};
+std::optional<unsigned> panel_key_of(Action action) {
+    const int beyond = static_cast<int>(action) - static_cast<int>(Action::FirstPanel);
+    return beyond < 0 ? std::nullopt : std::optional{static_cast<unsigned>(first_panel_key - Key::F1 + 1 + beyond)};
 }
 
 std::span<const KeyBinding> key_bindings() {
@@ -166,7 +164,7 @@ std::vector<HelpLine> help_lines() {
 std::vector<HelpLine> help_lines(const Panels& panels) {
     std::vector<HelpLine> lines;
     for (std::size_t i = 0; i < panels.titles().size(); ++i) {
-        lines.push_back({panel_key(i), "show the panel " + std::string{panels.titles()[i]}});
+        lines.push_back({panels.key_of(i), "show the panel " + std::string{panels.titles()[i]}});
     }
     for (std::size_t i = 0; i < panels.titles().size(); ++i) {
         if (!panels.keys_of(i).empty()) {

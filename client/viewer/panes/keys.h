@@ -51,11 +51,11 @@ enum class Action {
     Close, // closes a menu, or else the help, or else ends a tool, or else returns a detached panel to the sidebar;
            // pressed twice without these: closes the window
     Quit,
-    FirstPanel, // FirstPanel + index shows the panel with this index
+    FirstPanel, // FirstPanel + n shows the panel with the function key F(2 + n)
 };
 
-/// The panel that the action shows; nullopt for any other action.
-std::optional<std::size_t> panel_of(Action action);
+/// The function key of the panel that the action shows, such as 4 for F4; nullopt for any other action.
+std::optional<unsigned> panel_key_of(Action action);
 
 constexpr unsigned step_many_ticks = 60;
 

@@ -31,9 +31,9 @@ constexpr Callout callouts[] = {
      "The fitness of the best organism and the mean of all, generation by generation. The curves rise while the "
      "population evolves."},
     {"Tabs/Parameters", "Panels",
-     "Parameters changes the experiment while it runs. Plots draws its statistics. Glass box shows how the parents of "
-     "a "
-     "generation were picked."},
+     "Parameters changes the experiment while it runs. Plots draws its statistics. The page in a browser also shows "
+     "how "
+     "the parents of a generation were picked; Ctrl+C copies a link to it."},
     {"Sidebar/Replay or live", "Earlier generations",
      "Replay returns to any moment of the run; the world itself continues. The key H lists all keys and shows this "
      "tour "

@@ -1,6 +1,7 @@
 #include "client/viewer/shell/screen.h"
 
 #include "client/viewer/drawing/png.h"
+#include "client/viewer/panels/page_panels.h"
 #include "client/viewer/shell/display.h"
 
 #include <algorithm>
@@ -35,6 +36,10 @@ class Screen::ScriptHost : public Script::Host {
 
     void send(const sf::Event& event) override { screen_.script_events_.push_back(event); }
     std::vector<const MarkedWidget*> find(const std::string& name) const override { return widgets().find(name); }
+    std::string absence(const std::string& name) const override {
+        const std::string_view panel = page_panel_with(name);
+        return panel.empty() ? "" : where_in_page(panel, panes_ == nullptr ? "" : panes_->focused().world.live_link());
+    }
     void reveal(const std::string& widget) override { widgets().reveal(widget); }
     unsigned hovered() const override { return widgets().hovered(); }
     bool covered() const override { return screen_.renderer_.gui().captured().mouse; }

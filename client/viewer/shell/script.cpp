@@ -217,6 +217,11 @@ const Verb verbs[] = {
              return word_error(line, 3, allowed);
          }
          return Acts{[condition, word](Run& run) -> Waits {
+             if (condition->fault == no_fault && !word.empty() && run.host.find(word).empty()) {
+                 if (std::string absence = run.host.absence(word); !absence.empty()) {
+                     return usage(std::move(absence));
+                 }
+             }
              return condition->holds(run.host, word) ? "" : "the condition does not hold";
          }};
      }},

@@ -58,6 +58,8 @@ class Script {
         virtual void send(const sf::Event& event) = 0;
         /// Returns the widgets with this name: "name" or "Panel/name".
         virtual std::vector<const MarkedWidget*> find(const std::string& name) const = 0;
+        /// Returns why evoview has no widget with this name: a panel of the page has it. Empty for any other name.
+        virtual std::string absence(const std::string& name) const = 0;
         /// Scrolls the widget with this full name into view.
         virtual void reveal(const std::string& widget) = 0;
         /// Returns the widget of Dear ImGui under the mouse, as in MarkedWidget::id; 0: none.

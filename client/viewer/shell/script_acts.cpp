@@ -223,6 +223,9 @@ Waits obstacle(Run& run, const std::string& name) {
     }
     const MarkedWidget* widget = *found;
     if (widget == nullptr) {
+        if (std::string absence = run.host.absence(name); !absence.empty()) {
+            return usage(std::move(absence));
+        }
         return "no widget " + in_quotes(name) + " is on the screen";
     }
     if (!widget->enabled) {

@@ -1,6 +1,7 @@
 #include "client/viewer/shell/window.h"
 
 #include "client/viewer/drawing/png.h"
+#include "client/viewer/panels/page_panels.h"
 
 #include <SFML/Window/Clipboard.hpp>
 
@@ -111,10 +112,10 @@ void Window::handle_events() {
 }
 
 std::string Window::problem_of(Action action) {
-    if (const auto panel = panel_of(action)) {
-        return *panel < renderer_.panels().titles().size() ? "" : "This key shows no panel";
-    }
     ViewedWorld& world = panes_.focused().world;
+    if (const auto key = panel_key_of(action)) {
+        return renderer_.panels().panel_at(*key) ? "" : where_in_page(page_panel_at(*key), world.live_link());
+    }
     switch (action) {
     case Action::PauseOrResume:
     case Action::StepOne:
@@ -141,8 +142,8 @@ std::string Window::problem_of(Action action) {
 }
 
 void Window::carry_out(Action action) {
-    if (const auto panel = panel_of(action)) {
-        return renderer_.panels().show(*panel);
+    if (const auto key = panel_key_of(action)) {
+        return renderer_.panels().show(*renderer_.panels().panel_at(*key));
     }
     ViewedWorld& world = panes_.focused().world;
     IslandView& island_view = panes_.focused().island_view;

@@ -72,10 +72,6 @@ std::string three_digits(double number) {
     return with_separators(print(size >= 999.5 ? "%.0f" : "%.3g", number));
 }
 
-std::string with_sign(double number) {
-    return (number >= 0 ? "+" : "") + three_digits(number);
-}
-
 std::string shown_tenths(double number) {
     return print("%.1f", number);
 }

@@ -28,8 +28,6 @@ std::string with_unit(double number, std::string_view unit);
 /// Returns the number with three significant digits: "1.21", "0.0123"; 1,000 and more as a whole number: "12,346"; "–"
 /// if it is not finite.
 std::string three_digits(double number);
-/// Returns the number as three_digits() does, with its sign: "+1.21", "−0.0123".
-std::string with_sign(double number);
 
 std::string shown_tenths(double number); // 251.34 → "251.3"
 

@@ -59,53 +59,41 @@ void OrganismHistory::add(const Population& population) {
     }
 }
 
-std::optional<evod::v1::GetBreeding> OrganismHistory::wanted_picks(bool has_bred) const {
+std::optional<evod::v1::GetBreeding> OrganismHistory::wanted_parent() const {
+    if (!info_) {
+        return std::nullopt;
+    }
+    const auto missing =
+        std::ranges::find_if(info_->parents(), [&](std::uint32_t id) { return parent(id) == nullptr; });
+    if (missing == info_->parents().end()) {
+        return std::nullopt;
+    }
     evod::v1::GetBreeding request;
+    request.set_generation(generation_ - 1);
+    request.set_first_contender(*missing);
     // The answer contains no rows of these lists.
     request.set_first_pick(std::numeric_limits<std::uint32_t>::max());
     request.set_first_descendant(std::numeric_limits<std::uint32_t>::max());
-    if (info_) {
-        for (const std::uint32_t parent : info_->parents()) {
-            if (picks_of_parent(parent) == nullptr) {
-                request.set_generation(generation_ - 1);
-                request.set_first_contender(parent);
-                return request;
-            }
-        }
-    }
-    if (has_bred && !picks_) {
-        request.set_generation(generation_);
-        request.set_first_contender(id_);
-        return request;
-    }
-    return std::nullopt;
+    return request;
 }
 
 void OrganismHistory::add(const evod::v1::GetBreeding& request, const evod::v1::Breeding& breeding) {
-    if (breeding.contenders().empty() || breeding.generation() != request.generation()) {
+    if (breeding.contenders().empty() || breeding.generation() != request.generation() ||
+        breeding.generation() + 1 != generation_) {
         return;
     }
-    const evod::v1::Contender& contender = breeding.contenders(0);
-    Picks picks{.organism = request.first_contender(),
-                .count = contender.copies(),
-                .all = breeding.pick_count(),
-                .expected = contender.expected_copies()};
-    if (contender.has_migrant()) {
-        picks.migrant = contender.migrant();
-    }
-    if (breeding.generation() == generation_) {
-        picks_ = std::move(picks);
-    } else if (breeding.generation() + 1 == generation_) {
-        origin_ = id_ < breeding.elite_count()      ? Origin::Elite
-                  : id_ < breeding.survivor_count() ? Origin::Survivor
-                                                    : Origin::Child;
-        parent_picks_.push_back(std::move(picks));
+    origin_ = id_ < breeding.elite_count()      ? Origin::Elite
+              : id_ < breeding.survivor_count() ? Origin::Survivor
+                                                : Origin::Child;
+    Parent& parent = parents_.emplace_back(Parent{.id = request.first_contender()});
+    if (breeding.contenders(0).has_migrant()) {
+        parent.migrant = breeding.contenders(0).migrant();
     }
 }
 
-const OrganismHistory::Picks* OrganismHistory::picks_of_parent(std::uint32_t parent) const {
-    const auto found = std::ranges::find(parent_picks_, parent, &Picks::organism);
-    return found == parent_picks_.end() ? nullptr : &*found;
+const OrganismHistory::Parent* OrganismHistory::parent(std::uint32_t id) const {
+    const auto found = std::ranges::find(parents_, id, &Parent::id);
+    return found == parents_.end() ? nullptr : &*found;
 }
 
 } // namespace evod::viewer

@@ -1,5 +1,5 @@
 // OrganismHistory: the data about one organism that were received since it was selected: its health over time, its
-// death, its children, and how often it and its parents were picked for breeding.
+// death, its parents and its children.
 //
 // Owner        IslandView.
 // Threads      none; used by the thread that draws.
@@ -31,12 +31,9 @@ class OrganismHistory {
         bool same_genes = false;                     // the child is an unchanged copy
     };
 
-    /// How often an organism was picked when its generation bred.
-    struct Picks {
-        std::uint32_t organism = 0;
-        std::uint32_t count = 0, all = 0; // the organism's picks, and all picks of the breeding
-        double expected = 0;              // expected number of the organism's picks
-        /// The organism of another island of which this organism is a copy; nullopt: it lived on this island.
+    struct Parent {
+        std::uint32_t id = 0;
+        /// The organism of another island of which the parent is a copy; nullopt: the parent lived on this island.
         std::optional<evod::v1::Migrant> migrant{};
     };
     /// How the organism itself came into its generation.
@@ -52,18 +49,13 @@ class OrganismHistory {
     void add(const evod::v1::OrganismInfo& info);
     /// Reads a population: the ranges of the genes from the organism's own generation, the children from the next one.
     void add(const Population& population);
-    /// Reads the picks of the organism or of its parents. The lists of the answer begin at an organism that
-    /// wanted_picks() has named.
+    /// Reads a parent. The list of contenders of the answer begins at the organism that wanted_parent() has named.
     void add(const evod::v1::GetBreeding& request, const evod::v1::Breeding& breeding);
 
-    /// Returns the next request for picks, without world and island; nullopt if nothing is missing.
-    ///
-    /// has_bred  whether the organism's own generation has bred
-    std::optional<evod::v1::GetBreeding> wanted_picks(bool has_bred) const;
-    /// Returns the organism's own picks; null until known.
-    const Picks* picks() const { return picks_ ? &*picks_ : nullptr; }
-    /// Returns the picks of this parent; null until known.
-    const Picks* picks_of_parent(std::uint32_t parent) const;
+    /// Returns the next request for a parent, without world and island; nullopt if nothing is missing.
+    std::optional<evod::v1::GetBreeding> wanted_parent() const;
+    /// Returns the parent with this id; null until known.
+    const Parent* parent(std::uint32_t id) const;
     Origin origin() const { return origin_; }
 
     std::uint32_t id() const { return id_; }
@@ -86,8 +78,7 @@ class OrganismHistory {
     std::optional<evod::v1::OrganismInfo> info_;
     std::vector<Population::Range> ranges_;
     std::optional<std::vector<Child>> children_;
-    std::optional<Picks> picks_;
-    std::vector<Picks> parent_picks_;
+    std::vector<Parent> parents_; // those that were received
     Origin origin_ = Origin::Unknown;
     bool ended_ = false, too_late_ = false;
 };

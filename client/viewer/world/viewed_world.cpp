@@ -165,11 +165,22 @@ void ViewedWorld::remove(const std::string& name) {
     });
 }
 
+std::string ViewedWorld::page() const {
+    return core::page_of(server.status().welcome.value_or(evod::v1::Welcome{}), server.endpoint(), server.uses_tls());
+}
+
+std::string ViewedWorld::live_link() const {
+    const std::string original = replay.info() ? replay.info()->replay_of() : "";
+    const std::string& name = original.empty() ? feed.name() : original;
+    if (page().empty() || name.empty() || !core::fits_into_url(name)) {
+        return page();
+    }
+    return core::link_of(page(), {.world = name});
+}
+
 std::string ViewedWorld::link() const {
     const codec::ReceivedSnapshot* snapshot = feed.snapshot();
-    const std::string page =
-        core::page_of(server.status().welcome.value_or(evod::v1::Welcome{}), server.endpoint(), server.uses_tls());
-    if (!snapshot || page.empty()) {
+    if (!snapshot || page().empty()) {
         return "";
     }
     const std::string original = replay.info() ? replay.info()->replay_of() : "";
@@ -183,7 +194,7 @@ std::string ViewedWorld::link() const {
     if (feed.island_count() > 1) {
         moment.island = snapshot->about.island();
     }
-    return core::link_of(page, moment);
+    return core::link_of(page(), moment);
 }
 
 std::optional<std::string> ViewedWorld::refusal() const {

@@ -63,6 +63,9 @@ class ViewedWorld {
     /// A link that shows this moment in a browser. Empty if the server has no page that this machine can reach, or if no
     /// snapshot has arrived.
     std::string link() const;
+    /// A link that shows the live world in a browser, as it runs. Empty if the server has no page that this machine can
+    /// reach.
+    std::string live_link() const;
 
     /// Whether every request has been answered. False until the first connection is established.
     bool all_answered() const { return server.all_answered() && !replay.opening(); }
@@ -72,6 +75,7 @@ class ViewedWorld {
     std::string state_text() const;
 
   private:
+    std::string page() const;
     void take_event(const evod::v1::Event& event);
     std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds) const;
 

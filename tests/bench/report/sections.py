@@ -233,21 +233,22 @@ def sweeps(bench):
 
 
 def evod_run(bench, *arguments):
-    """One `evod run`: what its last lines say, and the most memory it took."""
+    """One `evod run`: its speed and times, and the most memory it took."""
     with tempfile.TemporaryFile("w+") as text:
         began = time.perf_counter()
-        process = subprocess.Popen([bench.program("evod"), "run", *map(str, arguments)], stdout=text, stderr=text)
+        process = subprocess.Popen([bench.program("evod"), "run", "--json", *map(str, arguments)],
+                                   stdout=text, stderr=text)
         _, status, usage = os.wait4(process.pid, 0)
         wall = time.perf_counter() - began
         process.returncode = os.waitstatus_to_exitcode(status)
         text.seek(0)
         said = text.read()
-    speed = re.search(r"([\d.]+) M organism-ticks/s, ([\d.]+) × real time", said)
-    start = re.search(r"start-up ([\d.]+) s, turnover of generations ([\d.]+) s", said)
-    if process.returncode != 0 or not speed or not start:
+    if process.returncode != 0:
         sys.exit(f"evod run {arguments} failed:\n{said}")
-    return {"m_organism_ticks_per_s": float(speed[1]), "real_time_factor": float(speed[2]),
-            "start_up_s": float(start[1]), "turnover_s": float(start[2]), "wall_s": wall,
+    run = json.loads(said.splitlines()[-1])
+    return {"m_organism_ticks_per_s": run["organism_ticks"] / run["tick_s"] / 1e6,
+            "real_time_factor": run["simulated_s"] / run["tick_s"],
+            "start_up_s": run["start_s"], "turnover_s": run["turnover_s"], "wall_s": wall,
             "memory_bytes": usage.ru_maxrss * 1024}
 
 

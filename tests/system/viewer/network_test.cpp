@@ -1,5 +1,5 @@
 // Worlds whose organisms are steered by networks, as evoview shows them: headings on the island, the network of the selected
-// organism with the activations that the server computes, and long chromosomes in the plots and in the glass box.
+// organism with the activations that the server computes, and long chromosomes in the plots.
 //
 // Runs under Xvfb.
 #include "client/viewer/island/styles.h"
@@ -155,8 +155,6 @@ set gene "selection of all of the group"
 key F5
 set "colour by (C)" "gene hidden1<bias"
 set "colour by (C)" health
-key F8
-wait widget Play
 )script");
     EXPECT_EQ(ran.status, 0) << ran.output;
 }

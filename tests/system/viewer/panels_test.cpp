@@ -16,6 +16,7 @@
 namespace evod::viewer {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -56,7 +57,7 @@ evod::v1::Response ask(RealServer& server, const evod::v1::Request& request) {
     return response;
 }
 
-TEST_F(PanelsTest, LeadsFromAnOrganismToThePickOfItsParent) {
+TEST_F(PanelsTest, LeadsFromAnOrganismToItsParent) {
     RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
     server.run_generations("", 3);
     evod::v1::OrganismInfo healthiest;
@@ -69,42 +70,25 @@ TEST_F(PanelsTest, LeadsFromAnOrganismToThePickOfItsParent) {
         }
     }
     ASSERT_FALSE(healthiest.parents().empty());
-    const std::uint32_t parent = healthiest.parents(0);
-    evod::v1::Request request;
-    request.mutable_get_breeding()->set_generation(healthiest.generation() - 1);
-    const auto response = ask(server, request);
-    const auto& picks = response.breeding().picks();
-    const auto pick = std::ranges::find(picks, parent, &evod::v1::Pick::organism);
-    ASSERT_NE(pick, picks.end());
-    const std::string id = std::to_string(parent);
-    const std::string why = "wait snapshot\nkey F6\nclick \"Organism " + std::to_string(healthiest.id()) +
-                            "\"\nclick \"Why " + id + "?\"\nwait widget \"Pick " +
-                            std::to_string(pick - picks.begin() + 1) + "\"\nkey F6\n";
-    const std::string replay = "click \"Go to parent " + id +
-                               "\"\nwait widget \"Back to live\"\nclick \"Show its picks\"\nwait widget \"Pick " +
-                               std::to_string(pick - picks.begin() + 1) +
-                               "\"\nkey F6\nkey P\nwait gone \"Back to live\"\nquit\n";
-    const Ran ran = play(server.address(), why + replay);
+    const Ran ran =
+        play(server.address(), "wait snapshot\nkey F6\nclick \"Organism " + std::to_string(healthiest.id()) +
+                                   "\"\nclick \"Go to parent " + std::to_string(healthiest.parents(0)) +
+                                   "\"\nwait widget \"Back to live\"\nkey P\n"
+                                   "wait gone \"Back to live\"\nquit\n");
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
-TEST_F(PanelsTest, TheGlassBoxTakesKeysOnlyWithTheFocus) {
-    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
-    server.run_generations("", 2);
-    const Ran ran = play(server.address(), R"script(
-wait snapshot
-key F8
-wait widget Play
-wait connected
-click "Click: Select"
-wait connected
-key Space
-wait state running
-timeout 3
-wait widget Play
-quit
-)script");
-    EXPECT_EQ(ran.status, 0) << ran.output;
+TEST_F(PanelsTest, WhatOnlyThePageHasLeadsToThePage) {
+    RealServer with_page{{"--seed", "7", "--web", "--http-port", "0"}}, without{{"--seed", "7"}};
+    for (const std::string line : {"key F8", "click \"Glass box/Play\"", "wait widget \"hold the world\""}) {
+        const std::string script = "timeout 60\nwait connected\n" + line + "\nquit\n";
+        const Ran ran = play(with_page.address(), script);
+        EXPECT_EQ(ran.status, 1);
+        EXPECT_THAT(ran.output,
+                    AllOf(HasSubstr(":3: " + line + ": The panel Glass box is in the browser page: open http://"),
+                          HasSubstr("/#world=default and choose Glass box")));
+        EXPECT_THAT(play(without.address(), script).output, HasSubstr("start evod with --web"));
+    }
 }
 
 TEST_F(PanelsTest, DropDownsReturnToTheFirstChoice) {
@@ -128,30 +112,6 @@ set "running mean" "each generation"
 )script";
     }
     const Ran ran = play(server.address(), script + "quit\n");
-    EXPECT_EQ(ran.status, 0) << ran.output;
-}
-
-TEST_F(PanelsTest, BetsAreScoredAfterTheLastPick) {
-    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
-    server.run_generations("", 2);
-    const Ran ran = play(server.address(), R"script(
-wait snapshot
-key F8
-click "bet first"
-set Generation 1
-click "bet on 43"
-click "bet on 9"
-click Step
-wait gone score
-set steps/s 200
-click "Play the picks"
-wait widget score
-wait gone "bet on 43"
-key Home
-wait gone score
-wait gone "bet on 43"
-quit
-)script");
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
@@ -430,35 +390,6 @@ wait widget "nothing: the window is gone"
     EXPECT_TRUE(std::filesystem::exists(path)) << "the first press closed the window";
 }
 
-TEST_F(PanelsTest, TheGlassBoxHandlesOnlyItsKeys) {
-    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("data")}};
-    evod::v1::Request run;
-    run.mutable_run()->set_generations(2);
-    server.ask(run);
-    const Ran ran = play(server.address(), R"(
-wait generation 2
-wait state waiting
-key F8
-wait widget "Glass box/Play"
-key Space
-wait widget "Glass box/Stop"
-key .
-wait state paused
-key H
-wait widget Keys
-key Escape
-wait gone Keys
-wait widget "Glass box/the newest"
-key F4
-wait gone "Glass box/the newest"
-key Space
-wait state running
-quit
-)");
-    ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(server.state().state(), evod::v1::RUN_STATE_RUNNING);
-}
-
 TEST_F(PanelsTest, ShowsTheWorldOfTheCommandLineOnceConnected) {
     RealServer server{{"--seed", "7"}};
     evod::v1::Request create, statistics;
@@ -500,7 +431,7 @@ TEST_F(PanelsTest, APanelLeavesTheTimeLineFree) {
     server.ask(run);
     ASSERT_TRUE(
         wait_until([&] { return server.state().tick() == 30; })); // otherwise the middle of the line is an earlier tick
-    for (const char* when : {"wait widget left/Present\nkey F8\n", "key F8\nwait widget left/Present\n"}) {
+    for (const char* when : {"wait widget left/Present\nkey F7\n", "key F7\nwait widget left/Present\n"}) {
         const Ran ran = play(server.address() + " --past 1 --size 1280x720",
                              std::string{"wait snapshot\n"} + when + "click \"left/time line\"\nwait tick 10\nquit\n");
         ASSERT_EQ(ran.status, 0) << ran.output;
@@ -617,10 +548,7 @@ set palette cividis
 key F7
 set compare nothing
 set "image width" 800
-key F8
-set "Glass box/Generation" 2
-set "play each" on
-actions 19
+actions 14
 click left/at 0.5,0.5
 quit
 )script");

@@ -1,4 +1,4 @@
-// Ten tasks of a lesson in a real window. Each takes at most three actions from the first screen: clicks, keys and typed
+// Nine tasks of a lesson in a real window. Each takes at most three actions from the first screen: clicks, keys and typed
 // texts. docs/VIEWER.md lists the tasks with their actions.
 //
 // Runs under Xvfb.
@@ -101,13 +101,6 @@ TEST_F(TasksTest, CompareTheCurvesOfTwoWorlds) {
 click compare
 click "compare: world second")",
          "set compare \"world second\"");
-}
-
-TEST_F(TasksTest, SeeWhyAnOrganismWasChosen) {
-    const evod::v1::OrganismInfo organism = child();
-    play("click organism " + std::to_string(organism.id()) + "\nclick \"Why " + std::to_string(organism.parents(0)) +
-             "?\"",
-         "wait widget steps/s");
 }
 
 TEST_F(TasksTest, CreateAWorldFromAnExperiment) {

@@ -153,10 +153,14 @@ class Browser:
 
     def press(self, label, within="body"):
         """Clicks on the button with this text as soon as it can act."""
-        def look():
-            button = self.button(label, within)
-            return button if button.is_enabled() and button.get_attribute("aria-disabled") != "true" else None
-        self.click(waiting.until(look, f"the button {label!r} enabled", pause_s=0.05))
+        def clicked():
+            with contextlib.suppress(StaleElementReferenceException):  # the page has made another one
+                button = self.button(label, within)
+                if button.is_enabled() and button.get_attribute("aria-disabled") != "true":
+                    self.click(button)
+                    return True
+            return False
+        waiting.until(clicked, f"the button {label!r} enabled", pause_s=0.05)
 
     def panels(self):
         """The titles of all panels."""

@@ -44,6 +44,20 @@ TEST_F(Compare, PrintsTheRiseOfEveryWorld) {
     EXPECT_EQ(compare_quickly({"--jobs", "2"}).output, ended.output) << "any number of jobs gives the same result";
 }
 
+TEST_F(Compare, PrintsItsResultAsJson) {
+    const Ended ended = compare_quickly({"--jobs", "1", "--json"});
+    EXPECT_EQ(ended.status, 0) << ended.errors;
+    EXPECT_THAT(ended.output,
+                AllOf(HasSubstr(R"({"progress":)"),
+                      HasSubstr(R"({"seed":3,"generations":2,"worlds":[{"name":"a","first":)"),
+                      HasSubstr(R"(}],"not_run":[],"differences":[{"other":"b","difference":)"),
+                      HasSubstr(R"(}],"conclusions":")"), HasSubstr(R"("report":"a: 2 replicates of 2 generations)")));
+    for (const char* member :
+         {"last", "rise", "rise_low", "rise_high", "extinct", "changes", "low", "high", "g", "p", "adjusted"}) {
+        EXPECT_THAT(ended.output, HasSubstr(",\"" + std::string{member} + "\":"));
+    }
+}
+
 TEST_F(Compare, FilesAreCheckedBeforeTheRuns) {
     const Ended ended = compare_quickly({"--csv", csv, "--plot", "/nowhere/plot.svg"});
     EXPECT_EQ(ended.status, 1);

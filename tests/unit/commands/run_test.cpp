@@ -37,6 +37,18 @@ TEST_F(Run, EndsAtTheGenerationLimit) {
                                     HasSubstr("\nended: generation_limit was reached\n2 generations, ")));
 }
 
+TEST_F(Run, PrintsItsResultAsJson) {
+    const Ended ended = run({"--seed", "3", "--generations", "2", "--json"});
+    EXPECT_EQ(ended.status, 0) << ended.errors;
+    EXPECT_EQ(std::ranges::count(ended.output, '\n'), 1) << ended.output;
+    EXPECT_THAT(ended.output,
+                testing::StartsWith(R"({"seed":3,"outcome":"generation_limit","generations":2,"ticks":)"));
+    for (const char* member :
+         {"simulated_s", "state_hash", "start_s", "tick_s", "turnover_s", "exchange_s", "organism_ticks"}) {
+        EXPECT_THAT(ended.output, HasSubstr(",\"" + std::string{member} + "\":"));
+    }
+}
+
 TEST_F(Run, TheSeedDecidesTheResult) {
     const std::string first = state_of(run({"--seed", "3", "--generations", "1"}));
     EXPECT_NE(first, "");

@@ -34,6 +34,36 @@ TEST_F(SweepCommand, ADryRunPrintsCellsAndWritesNothing) {
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST_F(SweepCommand, PrintsWhatProgramsNeedAsJson) {
+    const Ended plan = sweep({"--dry-run", "--json"});
+    EXPECT_EQ(plan.status, 0) << plan.errors;
+    EXPECT_THAT(plan.output,
+                AllOf(HasSubstr(R"({"evod":")"), HasSubstr(R"("model":)"), HasSubstr(R"("seed":4,"seeds":[)"),
+                      HasSubstr(R"("parameters":["food_count"],"cells":[["5"],["9"]]})")));
+    std::filesystem::create_directory(out);
+    const Ended early = sweep({"--gather", "--json"});
+    EXPECT_EQ(early.status, 0) << early.errors;
+    EXPECT_THAT(early.output, AllOf(HasSubstr(R"({"missing":[{"run":0,"cell":0,"replicate":0,"seed":)"),
+                                    HasSubstr(out + "/parts/cell-1-replicate-1.csv")));
+    for (const std::string run : {"0", "1", "2", "3"}) {
+        const std::string part = out + "/parts/cell-" + std::to_string(std::stoi(run) / 2) + "-replicate-" +
+                                 std::to_string(std::stoi(run) % 2) + ".csv";
+        const Ended ended = run_command(add_sweep_command, {"sweep", path, "--run", run, "--part", part, "--json"});
+        EXPECT_EQ(ended.status, 0) << ended.errors;
+        EXPECT_THAT(ended.output,
+                    AllOf(HasSubstr("{\"run\":" + run + ","), HasSubstr(R"("outcome":"generation_limit","rows":1})")));
+    }
+    EXPECT_THAT(sweep({"--gather", "--json"}).output,
+                HasSubstr(R"("rows":4,"outcomes":{"generation_limit":4},"missing":[]})"));
+    const std::string table = contents_of(out + "/runs.csv");
+    std::filesystem::remove_all(out);
+    const Ended whole = sweep({"--jobs", "1", "--json"});
+    EXPECT_THAT(whole.output, AllOf(HasSubstr("{\"progress\":"), HasSubstr(R"("missing":[]})")));
+    EXPECT_EQ(contents_of(out + "/runs.csv"), table);
+    EXPECT_THAT(run_command(add_sweep_command, {"sweep", path, "--run", "4", "--part", out}).errors,
+                HasSubstr("--run: got 4, allowed 0 to 3"));
+}
+
 TEST_F(SweepCommand, RunsWhatIsMissing) {
     const Ended ended = sweep({"--jobs", "1"});
     EXPECT_EQ(ended.status, 0) << ended.errors;

@@ -9,7 +9,6 @@ import dataclasses
 import functools
 import os
 import pathlib
-import re
 import shutil
 import tempfile
 from typing import Any, Mapping, Sequence, Union
@@ -17,9 +16,9 @@ from typing import Any, Mapping, Sequence, Union
 from evod.aio.lab import local
 from evod.aio.link import blocking_call
 from evod.errors import InvalidArgument, wrong_argument
-from evod.executor_sweep import RUN_ENDED, ExecutorSweep, Plan, unreadable
+from evod.executor_sweep import ExecutorSweep, Plan, plan_command
 from evod.experiment import Experiment, file_of, json_text, values_of, with_parameters, write_json
-from evod.program import Program, find_program
+from evod.program import Program, find_program, result_in
 from evod.progress import progress_bar
 from evod.run_file import RunFile
 from evod.tables import html_table, pandas, read_csv
@@ -155,10 +154,11 @@ async def run_table(
         csv = pathlib.Path(folder) / "run.csv"
         command = [find_program(program), "run", path, "--csv", str(csv), "--threads", str(threads)]
         command += [*_option("seed", seed), *_option("generations", generations)]
-        await _output_of(Program(command, hidden=f"{folder}/experiment.json: ", accepted=RUN_ENDED))
+        await _output_of(Program(command, hidden=f"{folder}/experiment.json: ", accepted=_RUN_ENDED))
         return read_csv(csv.read_text(encoding="utf-8"))
 
 
+_RUN_ENDED = (0, 3, 4)  # the statuses of `evod run` if the run ended by itself: by a limit or a target, stagnation, extinction
 _TERMINATION = ("generation_limit", "stagnation_limit", "stop_at_target_fitness", "stop_at_extinction")
 
 
@@ -247,7 +247,7 @@ async def sweep(
     executor
         An executor of concurrent.futures, or of a package with the same interface, such as
         ``distributed.Client(…).get_executor()`` or ``mpi4py.futures.MPIPoolExecutor()``. Each run is a task, which executes
-        `evod run` with one thread. The workers need this package and the same build of evod, but no shared folder. The
+        `evod sweep --run` with one thread. The workers need this package and the same build of evod, but no shared folder. The
         result is the same as without an executor, byte for byte. By default one process `evod sweep` executes all runs.
     out
         The folder for the results, in which the same call resumes an interrupted sweep. By default a temporary folder.
@@ -289,15 +289,14 @@ async def sweep(
     with tempfile.TemporaryDirectory(prefix="evod-sweep-") as folder:
         path = write_json(os.path.join(folder, "sweep.json"), design)
         results = pathlib.Path(folder if out is None else out)
-        command = [find_program(program), "sweep", path]
-        plan = Plan.parse(await _output_of(Program([*command, "--dry-run"], hidden=f"{path}: ")))
+        plan = Plan.of(result_in(await _output_of(plan_command(program, path))))
         with progress_bar("sweep", 1.0, progress) as advance:
             if executor is None:
-                command += ["--out", str(results), *_option("jobs", jobs)]
+                command = [find_program(program), "sweep", path, "--json", "--out", str(results), *_option("jobs", jobs)]
                 await _output_of(Program(command, hidden=f"{path}: ", on_progress=advance))
             else:
                 text = pathlib.Path(whole).read_text(encoding="utf-8") if isinstance(whole, str) else json_text(whole)
-                runs = ExecutorSweep(executor, plan, path=path, experiment=text, generations=generations, results=results,
+                runs = ExecutorSweep(executor, plan, path=path, design=design, experiment=text, results=results,
                                      program=program, on_progress=advance)  # fmt: skip
                 await _output_of(runs)
         text = (results / "runs.csv").read_text(encoding="utf-8")
@@ -309,7 +308,7 @@ async def sweep(
 
 @dataclasses.dataclass(frozen=True)
 class ComparedWorld:
-    """A world of a comparison. Numbers have the precision with which `evod compare` prints them."""
+    """A world of a comparison."""
 
     name: str
     first: float  #: mean fitness of the first generation
@@ -341,7 +340,7 @@ class Comparison:
     worlds: tuple[ComparedWorld, ...]  #: the first world, then its controls or the other worlds
     differences: tuple[Difference, ...]  #: of the first world to each other world
     verdict: str  #: the conclusions in sentences
-    report: str  #: everything that `evod compare` printed
+    report: str  #: everything that `evod compare` prints
     csv: str  #: the fitness of every run and generation
 
     @functools.cached_property
@@ -445,44 +444,18 @@ async def compare(
                 path = os.path.join(tempfile.mkdtemp(dir=folder), f"{name}.json")
             paths.append(write_json(path, values))
         csv = os.path.join(folder, "fitness.csv")
-        command = [find_program(program), "compare", *paths, "--replicates", str(replicates), "--csv", csv]
+        command = [find_program(program), "compare", *paths, "--json", "--replicates", str(replicates), "--csv", csv]
         command += ["--controls"] if controls or controls is None and len(given) == 1 else []
         command += [*_option("seed", seed), *_option("generations", generations), *_option("jobs", jobs)]
         with progress_bar("comparison", 1.0, progress) as advance:
-            report = await _output_of(Program(command, hidden=f"{folder}/", on_progress=advance))
-        return _comparison(report, pathlib.Path(csv).read_text(encoding="utf-8"))
-
-
-_WORLD = re.compile(
-    r"(?P<name>.+?) +(?P<first>\S+) +(?P<last>\S+) +(?P<rise>\S+) +(?P<rise_low>\S+) to (?P<rise_high>\S+) +(?P<extinct>\d+)"
-    r"(?: +(?P<changes>\S.*))?"
-)
-_DIFFERENCE = re.compile(
-    r"(?P<other>.+?) +(?P<difference>\S+) +(?P<low>\S+) to (?P<high>\S+) +(?P<g>\S+) +(?P<p>\S+) +(?P<adjusted>\S+)"
-)
-_NOT_RUN = re.compile(r".+? is not run: .*")
-
-
-def _comparison(report: str, csv: str) -> Comparison:
-    """Reads what evod compare printed: paragraphs with a title, a table of worlds, a table of differences, and sentences."""
-    _, of_worlds, *others = report.strip().split("\n\n")
-    worlds, differences = [], []
-    for line in of_worlds.splitlines()[1:]:
-        if found := _WORLD.fullmatch(line):
-            row = found.groupdict(default="")
-            numbers = {name: float(row[name]) for name in ("first", "last", "rise", "rise_low", "rise_high")}
-            worlds.append(ComparedWorld(name=row["name"], **numbers, extinct=int(row["extinct"]), changes=row["changes"]))
-        elif not _NOT_RUN.fullmatch(line):
-            raise unreadable("compare")
-    if others and others[0].startswith("rise of "):
-        for line in others.pop(0).splitlines()[2:]:
-            found = _DIFFERENCE.fullmatch(line)
-            if found is None:
-                raise unreadable("compare")
-            numbers = {name: float(found[name]) for name in ("difference", "low", "high", "p", "adjusted")}
-            g = None if found["g"] == "-" else float(found["g"])
-            differences.append(Difference(other=found["other"], g=g, **numbers))
-    return Comparison(tuple(worlds), tuple(differences), " ".join(" ".join(others).split()), report, csv)
+            result = result_in(await _output_of(Program(command, hidden=f"{folder}/", on_progress=advance)))
+        return Comparison(
+            tuple(ComparedWorld(**world) for world in result["worlds"]),
+            tuple(Difference(**difference) for difference in result["differences"]),
+            " ".join(result["conclusions"].split()),
+            result["report"],
+            pathlib.Path(csv).read_text(encoding="utf-8"),
+        )
 
 
 async def _output_of(program: Union[Program, ExecutorSweep]) -> str:

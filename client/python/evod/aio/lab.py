@@ -14,13 +14,14 @@ from evod import local_server, page_link, plans, plotting, tables
 from evod.aio.attributes import ParameterAttributes
 from evod.aio.awaitable import opens, opens_stream
 from evod.aio.link import Link, blocking_call
+from evod.conversion import result
 from evod.core import Core
 from evod.endpoint import Endpoint, read_token, tls_context
 from evod.experiment import Experiment
 from evod.genes import GENE_NAMES, Genes
 from evod.generations import Generation, History, Life, Population
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.results import Breeding, DamagedWorld, EntityIds, Motion, OrganismInfo, RunState, Statistics, WorldInfo, result
+from evod.results import Breeding, DamagedWorld, EntityIds, Motion, OrganismInfo, RunState, Statistics, WorldInfo
 from evod.snapshots import Snapshot
 from evod.tables import html_table
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2

@@ -344,7 +344,7 @@ void FamilyTreePanel::build_legend(const Context& context, bool second_parents_l
         });
     }
     if (selected_) {
-        entry("selected", line(palette::glass_current, 3 * pixel));
+        entry("selected", line(palette::selected_line, 3 * pixel));
     }
     if (kind_ != Kind::FirstParents) {
         entry(second_parents_left_out ? "second parents: zoom in" : "second parent",

@@ -213,11 +213,11 @@ void TreeDrawing::draw_selected() {
         if (const std::uint32_t place = tree.place_of(at.generation, at.index); place != FamilyTree::none) {
             const ImVec2 here = point(at.generation, place);
             if (!child) {
-                list_.AddCircle(here, 6 * pixel_, ink(palette::glass_current), 0, 2.5f * pixel_);
+                list_.AddCircle(here, 6 * pixel_, ink(palette::selected_line), 0, 2.5f * pixel_);
             } else if (subject_.both_parents) {
-                list_.AddLine(here, *child, ink(palette::glass_current), 3 * pixel_);
+                list_.AddLine(here, *child, ink(palette::selected_line), 3 * pixel_);
             } else {
-                draw_line_to(here, *child, palette::glass_current, 3 * pixel_);
+                draw_line_to(here, *child, palette::selected_line, 3 * pixel_);
             }
             child = here;
         }

@@ -503,13 +503,18 @@ class Writer {
     return begin;
   }
 
+  #byte(value: number): void {
+    const at = this.#grow(1); // before #data is read, which it may replace
+    this.#data[at] = value;
+  }
+
   varint(low: number, high = 0): void {
     while (high > 0 || low > 127) {
-      this.#data[this.#grow(1)] = low & 127 | 128;
+      this.#byte(low & 127 | 128);
       low = (low >>> 7 | high << 25) >>> 0;
       high >>>= 7;
     }
-    this.#data[this.#grow(1)] = low;
+    this.#byte(low);
   }
 
   bytes(bytes: Uint8Array): void {

@@ -188,14 +188,6 @@ TEST(Palette, RampsGetLighterForEveryColourVision) {
     }
 }
 
-TEST(Palette, TextHasTheGreaterContrast) {
-    EXPECT_EQ(text_on({255, 255, 255}), text);
-    EXPECT_EQ(text_on({0, 0, 0}), note_text);
-    EXPECT_EQ(text_on(first_parent), note_text);
-    EXPECT_EQ(text_on(second_parent), text);
-    EXPECT_EQ(text_on({0, 0, 0, 40}), text) << "a faint colour over the light background";
-}
-
 TEST(ColourScale, MapsItsRangeAndClampsBeyondIt) {
     const ColourScale scale{Ramp::Viridis, 10, 20};
     EXPECT_EQ(scale(10), at(Ramp::Viridis, 0));

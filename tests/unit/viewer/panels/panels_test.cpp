@@ -1,5 +1,7 @@
 #include "client/viewer/panels/panels.h"
 
+#include "client/viewer/panels/page_panels.h"
+
 #include <gtest/gtest.h>
 
 namespace evod::viewer {
@@ -48,10 +50,17 @@ TEST(Panels, TheSidebarLeavesRoomForTheWorlds) {
     EXPECT_EQ(panels.width(1000, 1), 550);
     panels.set({.width = 10});
     EXPECT_EQ(panels.width(1280, 2), 2 * sidebar_width_min);
-    panels.set({});
-    panels.show("Glass box");
-    EXPECT_EQ(panels.width(1920, 1), 640) << "the glass box needs more room";
-    EXPECT_EQ(panels.width(1280, 1), 426) << "at most a third of the window";
+}
+
+TEST(Panels, EachPanelKeyShowsAPanelOrLeadsToThePage) {
+    const Panels panels;
+    for (unsigned key = 2; key <= 11; ++key) {
+        EXPECT_NE(panels.panel_at(key).has_value(), !page_panel_at(key).empty()) << "F" << key;
+    }
+    EXPECT_EQ(panels.panel_at(4), 2u);
+    EXPECT_EQ(panels.key_of(2), "F4");
+    EXPECT_EQ(panels.key_of(*panels.panel_at(9)), "F9") << "panels after one that is in the page keep their keys";
+    EXPECT_EQ(panels.panel_at(12), std::nullopt);
 }
 
 TEST(Panels, AnUnknownStoredTabIsTheFirst) {

@@ -49,6 +49,7 @@ struct Actor : Script::Host {
         }
         return found;
     }
+    std::string absence(const std::string& name) const override { return name == "Play" ? "Play is in the page" : ""; }
     void reveal(const std::string& widget) override { done.push_back("reveal " + widget); }
     unsigned hovered() const override { return under_mouse; }
     bool covered() const override { return false; }
@@ -143,6 +144,16 @@ TEST_F(ScriptTest, AKeyWithoutEffectFails) {
     auto script = Script::parse("key F11").value();
     actor.problem = "This key shows no panel";
     EXPECT_EQ(advance(script, 2), "1: key F11: This key shows no panel");
+}
+
+TEST_F(ScriptTest, AWidgetOfThePageFailsAtOnce) {
+    for (const std::string line : {"click Play", "set Play 1", "menu Play", "wait widget Play", "wait gone Play"}) {
+        auto script = Script::parse(line).value();
+        EXPECT_EQ(advance(script, 1), "1: " + line + ": Play is in the page");
+    }
+    actor.add("Play", {1, 2});
+    auto script = Script::parse("wait widget Play").value();
+    EXPECT_EQ(advance(script, 1), "") << "a widget with this name is on the screen";
 }
 
 TEST_F(ScriptTest, AClickWaitsForItsWidgetAndMovesThereFirst) {

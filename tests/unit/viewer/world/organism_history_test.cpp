@@ -131,62 +131,58 @@ TEST(Parents, NameTwoOrOneOrNone) {
     EXPECT_EQ(shown_parents(info, Child), "Parents: 45 and 12 (generation 35)");
 }
 
-/// The answer to a request of a history: the picks of the organism that the request names.
-evod::v1::Breeding picked(const evod::v1::GetBreeding& request, std::uint32_t copies, double expected) {
+/// The answer to a request of a history: the breeding, from the parent that the request names.
+evod::v1::Breeding bred(const evod::v1::GetBreeding& request) {
     evod::v1::Breeding breeding;
     breeding.set_generation(request.generation());
-    breeding.set_pick_count(25);
     breeding.set_elite_count(1);
     breeding.set_survivor_count(25);
-    auto& contender = *breeding.add_contenders();
-    contender.set_copies(copies);
-    contender.set_expected_copies(expected);
+    breeding.add_contenders();
     return breeding;
 }
 
-TEST(OrganismHistory, RequestsThePicksOfParentsThenItsOwn) {
+OrganismHistory child_of(std::uint32_t first, std::uint32_t second) {
     OrganismHistory history{3, 4};
-    EXPECT_FALSE(history.wanted_picks(false)) << "the parents are not known yet";
     auto described = info(4, true);
-    described.add_parents(45);
-    described.add_parents(12);
+    described.add_parents(first);
+    described.add_parents(second);
     history.add(described);
+    return history;
+}
+
+TEST(OrganismHistory, RequestsEachParent) {
+    EXPECT_FALSE((OrganismHistory{3, 4}.wanted_parent())) << "the parents are not known yet";
+    OrganismHistory history = child_of(45, 12);
     for (const std::uint32_t parent : {45u, 12u}) {
-        const auto wanted = history.wanted_picks(false);
+        const auto wanted = history.wanted_parent();
         ASSERT_TRUE(wanted);
         EXPECT_EQ(wanted->generation(), 3u);
         EXPECT_EQ(wanted->first_contender(), parent);
-        EXPECT_EQ(history.picks_of_parent(parent), nullptr);
-        history.add(*wanted, picked(*wanted, parent == 45 ? 3 : 0, 1.7083));
+        EXPECT_EQ(history.parent(parent), nullptr);
+        auto answer = bred(*wanted);
+        if (parent == 12) {
+            answer.mutable_contenders(0)->mutable_migrant()->set_island(1);
+            answer.mutable_contenders(0)->mutable_migrant()->set_organism(9);
+        }
+        history.add(*wanted, answer);
     }
+    EXPECT_FALSE(history.wanted_parent());
     EXPECT_EQ(history.origin(), OrganismHistory::Origin::Survivor);
-    EXPECT_EQ(shown_picks("Its parent 45", *history.picks_of_parent(45)),
-              "Its parent 45 was picked 3 of 25 times, expected 1.71.");
-    EXPECT_FALSE(history.wanted_picks(false)) << "the organism's own generation has not bred";
-    const auto own = history.wanted_picks(true);
-    ASSERT_TRUE(own);
-    EXPECT_EQ(own->generation(), 4u);
-    EXPECT_EQ(own->first_contender(), 3u);
-    auto answer = picked(*own, 2, 2);
-    answer.mutable_contenders(0)->mutable_migrant()->set_island(1);
-    answer.mutable_contenders(0)->mutable_migrant()->set_organism(9);
-    history.add(*own, answer);
-    EXPECT_FALSE(history.wanted_picks(true));
-    EXPECT_EQ(shown_picks("It", *history.picks()),
-              "It (a copy of organism 9 of island 1) was picked 2 of 25 times, expected 2.");
+    EXPECT_FALSE(history.parent(45)->migrant);
+    EXPECT_EQ(history.parent(12)->migrant->organism(), 9u);
 }
 
 TEST(OrganismHistory, IgnoresAnAnswerAboutAnotherBreeding) {
-    OrganismHistory history{3, 4};
-    const auto wanted = history.wanted_picks(true);
+    OrganismHistory history = child_of(45, 12);
+    const auto wanted = history.wanted_parent();
     ASSERT_TRUE(wanted);
-    auto answer = picked(*wanted, 2, 2);
+    auto answer = bred(*wanted);
     answer.set_generation(9);
     history.add(*wanted, answer);
-    answer.set_generation(4);
+    answer.set_generation(3);
     answer.clear_contenders();
     history.add(*wanted, answer);
-    EXPECT_EQ(history.picks(), nullptr);
+    EXPECT_EQ(history.parent(45), nullptr);
 }
 
 TEST(HealthAxis, EndsAtTheNextRoundNumber) {

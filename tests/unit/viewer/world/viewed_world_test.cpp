@@ -115,6 +115,7 @@ TEST_F(ViewedWorldTest, LinksToTheShownMoment) {
                                "&tick=" + std::to_string(shown.generation_tick());
     EXPECT_THAT(world.link(), testing::StartsWith(moment));
     world.feed.select(4);
+    EXPECT_EQ(world.live_link(), "http://lab:7745/#world=default");
     EXPECT_EQ(world.link(), moment + "&island=" + std::to_string(shown.island()) + "&organism=4");
 }
 

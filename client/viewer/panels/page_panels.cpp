@@ -1,0 +1,52 @@
+#include "client/viewer/panels/page_panels.h"
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+
+namespace evod::viewer {
+
+namespace {
+
+/// The widgets that no other panel of evoview has. Of a name that ends in a space, the begin decides.
+constexpr std::string_view glass_box_widgets[] = {
+    "Tabs/Glass box", "Glass box",   "Generation", "Play the picks", "Show its picks", "birth of the selected organism",
+    "the newest",     "bet first",   "play each",  "hold the world", "steps/s",        "step",
+    "score",          "hits so far", "Step",       "Theory",         "Pick ",          "bet on ",
+    "Why ",
+};
+
+struct PagePanel {
+    std::string_view tab;
+    unsigned function_key;
+    std::span<const std::string_view> widgets;
+};
+constexpr PagePanel page_panels[] = {{"Glass box", 8, glass_box_widgets}};
+
+bool has(const PagePanel& panel, std::string_view widget) {
+    const bool in_panel = widget.starts_with(panel.tab) && widget.substr(panel.tab.size()).starts_with('/');
+    return in_panel || std::ranges::any_of(panel.widgets, [&](std::string_view name) {
+               return name.ends_with(' ') ? widget.starts_with(name) : widget == name;
+           });
+}
+
+} // namespace
+
+std::string_view page_panel_at(unsigned function_key) {
+    const auto* found = std::ranges::find(page_panels, function_key, &PagePanel::function_key);
+    return found == std::end(page_panels) ? std::string_view{} : found->tab;
+}
+
+std::string_view page_panel_with(std::string_view widget) {
+    const auto* found = std::ranges::find_if(page_panels, [&](const PagePanel& panel) { return has(panel, widget); });
+    return found == std::end(page_panels) ? std::string_view{} : found->tab;
+}
+
+std::string where_in_page(std::string_view panel, std::string_view link) {
+    const std::string name{panel};
+    return "The panel " + name + " is in the browser page: " +
+           (link.empty() ? "start evod with --web, open the page" : "open " + std::string{link}) + " and choose " +
+           name;
+}
+
+} // namespace evod::viewer
