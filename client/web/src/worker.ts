@@ -9,7 +9,7 @@ import {ClientCore, type CoreEvent, is_name_of_replay, type Subscription} from "
 import {InvalidMessage} from "./core/errors";
 import {EventQueue} from "./core/event_queue";
 import type {Snapshot} from "./core/snapshot";
-import type {Camera, FromWorker, Look, Message, ToWorker} from "./core/messages";
+import type {Camera, Figures, FromWorker, Look, Message, ToWorker} from "./core/messages";
 import {Renderer} from "./render/renderer";
 
 const client_name = "browser";
@@ -614,7 +614,7 @@ function percentile(times: number[], share: number): number {
 }
 
 /** Figures for tests and benchmarks. Times are those of the last timings_kept snapshots and frames, in ms. */
-function figures(): Message {
+function figures(): Figures {
   const memory = (performance as {memory?: {usedJSHeapSize: number}}).memory;
   return {
     decode_p50_ms: percentile(decode_times, 0.5),

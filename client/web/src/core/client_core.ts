@@ -12,9 +12,12 @@
 //
 // Bounds       Requests beyond the server's limit are queued here. Every snapshot of a subscription with
 //              unacknowledged_max has to be passed to acknowledge(), after it was drawn or dropped.
-import type {Message} from "./messages";
 import {DamagedData, InvalidMessage, SessionEnded} from "./errors";
 import {control_channel, encode_frame, FrameReader} from "./frames";
+import type {RequestKind, Tagged} from "./messages";
+import type {
+  ClientMessage, Event, Hello, Request, Response, ServerMessage, SnapshotFrame, Status, SubscribeEvents,
+  SubscribeSnapshots, View, Welcome} from "./protocol";
 import {Schema} from "./protobuf";
 import type {Snapshot} from "./snapshot";
 import {is_keyframe, SnapshotDecoder} from "./snapshot_decoder";
@@ -24,60 +27,27 @@ const keyframe_requests_max = 3; // consecutive keyframe requests without a deco
 const control_frame_bytes_max = 1 << 20; // until the server has stated its limit
 
 /** Requests that contain an id which is valid only in its session. They fail when the session ends. */
-const session_requests = new Set(["unsubscribe", "request_keyframe", "set_view", "continue_export"]);
+const session_requests: ReadonlySet<RequestKind> =
+  new Set(["unsubscribe", "request_keyframe", "set_view", "continue_export"]);
 
 /** A Goodbye with one of these codes ends the client: another session would end for the same reason. */
 const final_codes = new Set(["CODE_UNAUTHENTICATED", "CODE_PERMISSION_DENIED", "CODE_INVALID_ARGUMENT"]);
 
-export type CoreEvent =|{
-  kind: "opened";
-  welcome: Message
-} // there is a session
-|{
-  kind: "response";
-  id: number;
-  response: Message
-} // refusals included: response.status
-|{
-  kind: "failed";
-  id: number;
-  message: string;
-  code: string
-} // no answer can arrive any more
-|{
-  kind: "event";
-  subscription: Subscription;
-  event: Message
+interface CoreEvents {
+  opened: {welcome: Welcome}; // there is a session
+  response: {id: number; response: Response}; // refusals included: response.status
+  failed: {id: number; message: string; code: string}; // no answer can arrive any more
+  event: {subscription: Subscription; event: Event};
+  snapshot: {subscription: Subscription; snapshot: Snapshot};
+  damaged: {subscription: Subscription; message: string}; // a snapshot was dropped, and a keyframe requested
+  subscribed: {subscription: Subscription}; // in this session
+  subscription_refused: {subscription: Subscription; status: Status};
+  view_refused: {subscription: Subscription; status: Status}; // the previous view stays
+  close: {message: string; code: string}; // close the socket; see `failed` for whether to connect again
 }
-|{
-  kind: "snapshot";
-  subscription: Subscription;
-  snapshot: Snapshot
-}
-|{
-  kind: "damaged";
-  subscription: Subscription;
-  message: string
-} // a snapshot was dropped, a keyframe requested
-|{
-  kind: "subscribed";
-  subscription: Subscription
-} // in this session
-|{
-  kind: "subscription_refused";
-  subscription: Subscription;
-  status: Message
-}
-|{
-  kind: "view_refused";
-  subscription: Subscription;
-  status: Message
-} // the previous view stays
-|{
-  kind: "close";
-  message: string;
-  code: string
-}; // close the socket; see `failed` for whether to connect again
+
+/** What happened. */
+export type CoreEvent = Tagged<CoreEvents>;
 
 /** Why there is no session, or why none is possible. */
 export interface Loss {
@@ -85,12 +55,20 @@ export interface Loss {
   code: string; // "CODE_UNAUTHENTICATED" …; empty if there is none
 }
 
+type SubscriptionRequest = {
+  subscribe_snapshots: SubscribeSnapshots;
+  subscribe_events?: undefined
+}|{
+  subscribe_events: SubscribeEvents;
+  subscribe_snapshots?: undefined
+};
+
 /** A subscription that continues after a reconnect, until unsubscribe(). The fields are set by the core. */
 export interface Subscription {
-  readonly request: Message; // { subscribe_snapshots } or { subscribe_events }
+  readonly request: SubscriptionRequest;
   server_id: number|null; // in this session; null: not accepted yet
   request_id: number|null; // of the unanswered request
-  refused: Message|null; // the Status if the server has refused it
+  refused: Status|null; // if the server has refused it
   sessions: number; // in which the server accepted it
   rate_hz: number; // snapshots per second that the server granted
   ended: boolean;
@@ -105,7 +83,7 @@ export interface CoreOptions {
 }
 
 interface Pending {
-  kind: string;
+  kind: RequestKind|"";
   ends_with_session: boolean;
   frame: Uint8Array;
   sent: boolean; // in this session
@@ -120,22 +98,22 @@ interface StreamState {
 
 /** What a subscription to snapshots needs besides its public fields. */
 interface ViewState {
-  wanted: Message|null; // the newest view of set_view(), if it was not sent
-  sent: Message|null; // the view in the unanswered SetView
+  wanted: View|null; // the newest one of set_view(), if it was not sent
+  sent: View|null; // the one in the unanswered SetView
   request_id: number|null; // of that SetView
 }
 
 export class ClientCore {
   readonly schema: Schema;
   readonly client_key = random_key();
-  welcome: Message|null = null; // received in the current or the last session
+  welcome: Welcome|null = null; // received in the current or the last session
   connected = false; // the server has sent its Welcome on the current connection
   failed: Loss|null = null; // why reconnecting is pointless; null: connect again
   loss: Loss|null = null; // why there is no session at present
   retry_late = false; // the server is full: connect again only after the longest wait
   damaged_snapshot_count = 0;
 
-  readonly #hello: Message;
+  readonly #hello: Hello;
   readonly #server: string;
   #reader = new FrameReader();
   #queued: Uint8Array[] = []; // frames to send
@@ -273,22 +251,22 @@ export class ClientCore {
    *  first: send it before the requests that wait. Throws InvalidMessage if the request does not fit its type or is too
    *  long, or if `failed` is set. Throws SessionEnded if it contains an id of a session and there is none, or if it names
    *  a replay of an earlier session. */
-  request(request: Message, first = false): number {
+  request(request: Request, first = false): number {
     if (this.failed !== null) {
       throw new InvalidMessage(this.failed.message);
     }
-    const id = this.#last_request_id + 1, kind = kind_of(request), replay = replay_in(request);
-    const ends_with_session = session_requests.has(kind) || replay !== "";
+    const id = this.#last_request_id + 1, kind = request_kind(request), replay = replay_in(request);
+    const ends_with_session = (kind !== "" && session_requests.has(kind)) || replay !== "";
     if (this.#ended_replays.has(replay)) {
       const status = replay_has_ended(replay);
-      throw new SessionEnded(status.message, status);
+      throw new SessionEnded(status.message ?? "", status);
     }
     if (this.loss !== null && this.welcome !== null && ends_with_session) {
       throw new SessionEnded(this.loss.message, null);
     }
     const body =
       this.schema.encode("evod.v1.ClientMessage", {request: {...request, request_id: id, client_key: this.client_key}});
-    const limit: number = this.welcome?.limits?.control_frame_bytes_max ?? control_frame_bytes_max;
+    const limit = this.welcome?.limits?.control_frame_bytes_max ?? control_frame_bytes_max;
     if (body.length > limit) {
       throw new InvalidMessage(`the request is ${body.length} bytes long, allowed: at most ${limit}`);
     }
@@ -318,7 +296,7 @@ export class ClientCore {
    *
    *  request: { subscribe_snapshots: {…} } or { subscribe_events: {…} }. The core keeps and changes this object. Throws
    *  InvalidMessage like request(). */
-  subscribe(request: Message): Subscription {
+  subscribe(request: SubscriptionRequest): Subscription {
     if (this.failed !== null) {
       throw new InvalidMessage(this.failed.message);
     }
@@ -345,7 +323,7 @@ export class ClientCore {
 
   /** Changes the view of a subscription to snapshots that began with one. At most one change is in flight; further ones
    *  replace each other until it is answered. */
-  set_view(subscription: Subscription, view: Message): void {
+  set_view(subscription: Subscription, view: View): void {
     if (!subscription.ended) {
       const state = this.#views.get(subscription) ?? {wanted: null, sent: null, request_id: null};
       state.wanted = view;
@@ -374,16 +352,16 @@ export class ClientCore {
     this.#events.push({kind: "close", ...loss});
   }
 
-  #send(message: Message): void {
+  #send(message: ClientMessage): void {
     this.#queued.push(encode_frame(this.schema.encode("evod.v1.ClientMessage", message)));
   }
 
-  #send_acknowledgement(subscription_id: number, island: number, sequence: number|bigint): void {
+  #send_acknowledgement(subscription_id: number, island: number, sequence: number): void {
     this.#send({acknowledge_snapshot: {subscription_id, island, sequence}});
   }
 
   /** Queues a request of this core itself, which causes no event. It ends with the session. */
-  #request_silently(request: Message): number {
+  #request_silently(request: Request): number {
     const id = this.request(request, true);
     this.#own.add(id);
     return id;
@@ -411,7 +389,7 @@ export class ClientCore {
     }
   }
 
-  #take_control(message: Message): void {
+  #take_control(message: ServerMessage): void {
     if (!this.connected) {
       this.#take_welcome(message);
     } else if (message.response !== undefined) {
@@ -428,7 +406,7 @@ export class ClientCore {
     }
   }
 
-  #take_welcome(message: Message): void {
+  #take_welcome(message: ServerMessage): void {
     if (message.goodbye !== undefined) {
       const loss = loss_of(message.goodbye.status);
       const refused = {message: `the server at ${this.#server} refused this client: ${loss.message}`, code: loss.code};
@@ -463,19 +441,19 @@ export class ClientCore {
     this.#send_waiting();
   }
 
-  #take_response(response: Message): void {
-    const id: number = response.request_id ?? 0;
+  #take_response(response: Response): void {
+    const id = response.request_id ?? 0;
     this.#in_flight.delete(id);
     this.#first.delete(id);
     if (this.#abandoned_replays.delete(id) && response.world !== undefined) {
-      this.request({close_replay: {world: response.world.name}});
+      this.request({close_replay: {world: response.world.name ?? ""}});
     }
     const pending = this.#pending.get(id);
     if (pending !== undefined && pending.sent) {
       this.#pending.delete(id);
       if (pending.kind === "open_replay" && response.world !== undefined) {
-        this.#own_replays.add(response.world.name);
-        this.#ended_replays.delete(response.world.name);
+        this.#own_replays.add(response.world.name ?? "");
+        this.#ended_replays.delete(response.world.name ?? "");
       }
       if (pending.kind.startsWith("subscribe_")) {
         this.#take_subscription(id, pending, response);
@@ -498,8 +476,8 @@ export class ClientCore {
     }
   }
 
-  #take_subscription(id: number, pending: Pending, response: Message): void {
-    const server_id: number = response.subscription?.subscription_id ?? 0;
+  #take_subscription(id: number, pending: Pending, response: Response): void {
+    const server_id = response.subscription?.subscription_id ?? 0;
     const subscription = [...this.#subscriptions].find((known) => known.request_id === id);
     if (response.status?.code !== undefined) {
       if (subscription !== undefined) {
@@ -548,12 +526,12 @@ export class ClientCore {
   }
 
   /** Takes the response to a request of this core itself. */
-  #take_own(id: number, response: Message): void {
+  #take_own(id: number, response: Response): void {
     for (const [subscription, state] of this.#views) {
       if (state.request_id === id) {
         if (response.status?.code !== undefined) {
           this.#events.push({kind: "view_refused", subscription, status: response.status});
-        } else {
+        } else if (subscription.request.subscribe_snapshots && state.sent) {
           subscription.request.subscribe_snapshots.view = state.sent; // later sessions request it, too
         }
         state.sent = state.request_id = null;
@@ -562,18 +540,17 @@ export class ClientCore {
     }
   }
 
-  #take_event(event: Message): void {
+  #take_event(event: Event): void {
     for (const subscription of this.#of_server_id.values()) {
-      const events: Message|undefined = subscription.request.subscribe_events;
-      const world: string = event.world ?? "";
+      const events = subscription.request.subscribe_events, world = event.world ?? "";
       if (events !== undefined && (events.world === undefined || world === "" || events.world === world)) {
         this.#events.push({kind: "event", subscription, event});
       }
     }
   }
 
-  #take_snapshot(frame: Message): void {
-    const server_id: number = frame.subscription_id ?? 0, island: number = frame.island ?? 0;
+  #take_snapshot(frame: SnapshotFrame): void {
+    const server_id = frame.subscription_id ?? 0, island = frame.island ?? 0;
     const subscription = this.#of_server_id.get(server_id);
     if (subscription === undefined) {
       return; // the subscription ended while the snapshot was in flight
@@ -614,21 +591,24 @@ export function is_name_of_replay(world: string): boolean {
   return world.includes("@");
 }
 
-/** Returns the field of a Request that is set. */
-function kind_of(request: Message): string {
-  return Object.keys(request).find((field) => request[field] !== undefined && request[field] !== null) ?? "";
+/** Returns the kind of a Request; empty if it has none. */
+function request_kind(request: Request): RequestKind|"" {
+  const fields = Object.keys(request) as (keyof Request)[];
+  const is_kind = (field: keyof Request): field is RequestKind => field !== "request_id" && field !== "client_key";
+  return fields.filter(is_kind).find((field) => request[field] !== undefined && request[field] !== null) ?? "";
 }
 
 /** Returns the name of the replay that a request names as its world: "default@3"; "" if it names none.
  *
  *  A replay ends with its session. Another session may use the name for another replay. */
-function replay_in(request: Message): string {
-  const world: unknown = request[kind_of(request)]?.world;
+function replay_in(request: Request): string {
+  const kind = request_kind(request), fields: {world?: unknown} = kind === "" ? {} : request[kind] ?? {};
+  const world = fields.world;
   return typeof world === "string" && is_name_of_replay(world) ? world : "";
 }
 
 /** Returns the Status for a replay of an earlier session, as the server states it if it does not know the replay. */
-function replay_has_ended(replay: string): {code: string; reason: string; message: string} {
+function replay_has_ended(replay: string): Status {
   return {
     code: "CODE_NOT_FOUND",
     reason: "REASON_WORLD_NOT_FOUND",
@@ -637,7 +617,7 @@ function replay_has_ended(replay: string): {code: string; reason: string; messag
 }
 
 /** Returns the reason in a Status. */
-function loss_of(status: Message|undefined): Loss {
+function loss_of(status: Status|undefined): Loss {
   return {message: status?.message ?? "the server ended the session", code: status?.code ?? ""};
 }
 

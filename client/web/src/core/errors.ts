@@ -1,4 +1,5 @@
 // Errors of the protocol core.
+import type {Status} from "./protocol";
 
 /** Received bytes are not what the protocol allows. Every reader of received bytes throws this and nothing else. */
 export class DamagedData extends Error {
@@ -16,7 +17,7 @@ export class SessionEnded extends InvalidMessage {
   override name = "SessionEnded";
 
   /** status: the Status with which the server would refuse the request; null: there is no session at present. */
-  constructor(message: string, readonly status: {code: string; reason: string; message: string}|null) {
+  constructor(message: string, readonly status: Status|null) {
     super(message);
   }
 }

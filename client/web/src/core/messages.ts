@@ -1,19 +1,40 @@
 // Messages between the page (main thread) and the worker, which owns the socket, the decoder and the canvases.
 //
-// All are plain objects that structured clone copies. A *pane* is one canvas with one shown world; panes are numbered from 0.
-import type {SnapshotInfo} from "./snapshot";
+// All are plain objects that structured clone copies. A *pane* is one canvas with one shown world; panes are numbered
+// from 0.
+//
+// protocol.ts describes the messages of the protocol.
+import {event_kinds} from "./protocol";
+import type {Event, EventKinds, One, Request, RequestKinds, RequestRules, Response, Welcome} from "./protocol";
+import type {Snapshot, SnapshotInfo} from "./snapshot";
 
-/** A protobuf message: keys are the field names of the .proto files; absent fields are missing; repeated fields are arrays
- *  (missing: empty); enums are their names; 64-bit integers are numbers, or bigint beyond 2^53; bytes are Uint8Array. */
+/** A message of the protocol whose type is not stated yet. */
 export type Message = {
   [field: string]: any
 };
+
+export type RequestKind = keyof RequestKinds;
+export type EventKind = keyof EventKinds;
+
+/** What an event is about, for an exhaustive switch over `kind`; null: a kind that this page does not know. */
+export function kind_of(event: Event): One<EventKinds>|null {
+  const kind = event_kinds.find((known) => event[known] !== undefined);
+  return kind === undefined ? null : {kind, value: event[kind]} as One<EventKinds>;
+}
+
+/** A union with one member for each field of Kinds: its fields, and its name as `kind`. */
+export type Tagged<Kinds> = {
+  [Kind in keyof Kinds]: {kind: Kind}&Kinds[Kind]
+}[keyof Kinds];
+
+/** For the end of a switch that has a case for every kind; the compiler refuses it if one is missing. */
+export function none_left(_: never): void {}
 
 export interface ConnectionState {
   phase: "connecting"|"open"|"lost"|"refused"; // lost: tries again by itself; refused: a user has to act
   message: string; // why, as a sentence; empty in "open"
   code: string; // "CODE_UNAUTHENTICATED" …; empty if there is none
-  welcome: Message|null; // session.proto Welcome of the present or the last session
+  welcome: Welcome|null; // of the present or the last session
 }
 
 /** What the worker draws, and how. The panels change it through Pane.set_look(). */
@@ -67,166 +88,63 @@ export interface PopulationColumns {
   targets: Float32Array[]|null; // x, y
 }
 
-export type ToWorker =|{
-  kind: "connect";
-  url: string;
-  token: string;
-  descriptor: ArrayBuffer
-}
-|{
-  kind: "request";
-  id: number;
-  request: Message;
-  first?: boolean
-} // Request without request_id and client_key
-|{
-  kind: "pane";
-  pane: number;
-  canvas: OffscreenCanvas
-} // transferred
-|{
-  kind: "close_pane";
-  pane: number
-}
-|{
-  kind: "resize";
-  pane: number;
-  width: number;
-  height: number;
-  pixel_ratio: number
-} // CSS pixels
-|{
-  kind: "watch";
-  pane: number;
-  world: string;
-  island: number;
-  rate_hz: number
-} // subscribes; replaces the last watch
-|{
-  kind: "unwatch";
-  pane: number
-}
-|{
-  kind: "camera";
-  pane: number;
-  camera: Camera|null
-} // null: the whole island
-|{
-  kind: "pointer";
-  pane: number;
-  at: {x: number; y: number}|null;
-  tool: Tool
-} // CSS pixels in the canvas
-|{
-  kind: "look";
-  pane: number;
-  look: Look
-}
-|{
-  kind: "select";
-  pane: number;
-  organism: number|null;
-  hovered: number|null;
-  follow: boolean
-}
-|{
-  kind: "population";
-  pane: number;
-  columns: PopulationColumns|null
-}
-|{
-  kind: "pick";
-  pane: number;
-  id: number;
-  x: number;
-  y: number;
-  radius: number
-} // CSS pixels in the canvas
-|{kind: "events_taken"} // the worker may send further events
-|{
-  kind: "visible";
-  visible: boolean
-} // document.visibilityState
-|{
-  kind: "ask_columns";
-  pane: number;
-  id: number
-} // for tests: the entities of the drawn snapshot
-|{
-  kind: "ask_figures";
-  id: number
-};
-
-/** What the option (evod.v1.rules) of the protocol says about one kind of request. */
-export interface RequestRules {
-  kind: string; // "REQUEST_KIND_COMMAND"
-  role: string; // "ROLE_VIEWER": the lowest role that may send the request
-  viewer_in_own_replay: boolean; // a viewer may send it if `world` is a replay of this session
-  answer: string; // the field of Response that an accepted request sets; empty: none
+interface MessagesToWorker {
+  connect: {url: string; token: string; descriptor: ArrayBuffer};
+  request: {id: number; request: Request; first?: boolean}; // Request without request_id and client_key
+  pane: {pane: number; canvas: OffscreenCanvas}; // transferred
+  close_pane: {pane: number};
+  resize: {pane: number; width: number; height: number; pixel_ratio: number}; // CSS pixels
+  watch: {pane: number; world: string; island: number; rate_hz: number}; // subscribes; replaces the last watch
+  unwatch: {pane: number};
+  camera: {pane: number; camera: Camera | null}; // null: the whole island
+  pointer: {pane: number; at: {x: number; y: number} | null; tool: Tool}; // CSS pixels in the canvas
+  look: {pane: number; look: Look};
+  select: {pane: number; organism: number | null; hovered: number | null; follow: boolean};
+  population: {pane: number; columns: PopulationColumns | null};
+  pick: {pane: number; id: number; x: number; y: number; radius: number}; // CSS pixels in the canvas
+  events_taken: {}; // the worker may send further events
+  visible: {visible: boolean}; // document.visibilityState
+  ask_columns: {pane: number; id: number}; // for tests: the entities of the drawn snapshot
+  ask_figures: {id: number};
 }
 
-export type FromWorker =|{
-  kind: "rules";
-  rules: Map<string, RequestRules>;
-  roles: string[]
-} // by the field of Request; roles in rising order
-|{
-  kind: "state";
-  state: ConnectionState
+export type ToWorker = Tagged<MessagesToWorker>;
+
+/** Figures for tests and benchmarks. The times are those of the last snapshots and frames that the worker remembers. */
+export interface Figures {
+  decode_p50_ms: number;
+  decode_p95_ms: number;
+  draw_p50_ms: number;
+  draw_p95_ms: number;
+  frames_per_s: number;
+  snapshots: number;
+  damaged_snapshots: number;
+  reconnects: number;
+  dropped: number; // snapshots that the server dropped
+  heap_bytes: number; // 0: not known
 }
-|{
-  kind: "response";
-  id: number;
-  response: Message
-} // commands.proto Response, refusals included
-|{
-  kind: "failed";
-  id: number;
-  message: string
-} // no answer can arrive any more
-|{
-  kind: "events";
-  events: Message[]
-} // stream.proto Event; of all worlds. The page answers events_taken
-|{
-  kind: "snapshot";
-  pane: number;
-  info: SnapshotInfo;
-  healthiest: {id: number; health: number}[];
-  selected: {x_px: number; y_px: number; health: number}|null
-} // of the drawn snapshot; at most 20 per second
-|{
-  kind: "drawing";
-  pane: number;
-  drawing: Drawing
-} // after it has changed
-|{
-  kind: "watch_refused";
-  pane: number;
-  message: string
+
+interface MessagesFromWorker {
+  rules: {rules: Map<RequestKind, RequestRules>; roles: string[]}; // by the field of Request; roles in rising order
+  state: {state: ConnectionState};
+  response: {id: number; response: Response}; // refusals included
+  failed: {id: number; message: string}; // no answer can arrive any more
+  events: {events: Event[]}; // of all worlds. The page answers events_taken
+  /** Of the drawn snapshot; at most 20 per second. */
+  snapshot: {
+    pane: number; info: SnapshotInfo; healthiest: {id: number; health: number}[];
+    selected: {x_px: number; y_px: number; health: number} | null
+  };
+  drawing: {pane: number; drawing: Drawing}; // after it has changed
+  watch_refused: {pane: number; message: string};
+  camera: {pane: number; camera: Camera}; // the camera followed an organism
+  /** Outside of the island x_px is -1. */
+  picked: {
+    id: number; generation: number; organism: number | null; food: number | null; poison: number | null; x_px: number;
+    y_px: number
+  };
+  columns: {id: number; columns: Snapshot | null};
+  figures: {id: number; figures: Figures};
 }
-|{
-  kind: "camera";
-  pane: number;
-  camera: Camera
-} // the camera followed an organism
-|{
-  kind: "picked";
-  id: number;
-  generation: number;
-  organism: number|null;
-  food: number|null;
-  poison: number|null;
-  x_px: number;
-  y_px: number
-} // beside the island: x_px -1
-|{
-  kind: "columns";
-  id: number;
-  columns: Message|null
-}
-|{
-  kind: "figures";
-  id: number;
-  figures: Message
-};
+
+export type FromWorker = Tagged<MessagesFromWorker>;

@@ -1,14 +1,14 @@
 // Protobuf: reads and writes messages by a FileDescriptorSet. There is no generated code.
 //
-// A message is a plain object (messages.ts, Message). Absent fields are missing. Repeated fields are arrays. Enums are
-// names; a number without a name stays a number. 64-bit integers are numbers below 2^53, otherwise bigints. `bytes` are
-// views of the bytes that were read.
+// A message is a plain object; its type is in protocol.ts. Absent fields are missing. Repeated fields are arrays. Enums
+// are names; a number without a name stays a number. 64-bit integers are numbers; beyond 2^53 they are rounded, except in
+// the wide_fields of protocol.ts, where they are bigints. `bytes` are views of the bytes that were read.
 //
 // The reader accepts what Google's C++ parser accepts: packed and unpacked fields, unknown fields and fields of another
 // wire type (skipped), parts of one message in several pieces (merged). It throws DamagedData for everything else. Its
 // memory is bounded by the number of bytes it reads.
-import type {Message, RequestRules} from "./messages";
 import {DamagedData, InvalidMessage} from "./errors";
+import {type Messages, type RequestKinds, type RequestRules, wide_fields} from "./protocol";
 
 const depth_max = 100; // levels of nested messages and groups
 
@@ -22,6 +22,11 @@ const wire_type_of = [
   -1, EIGHT_BYTES, FOUR_BYTES, VARINT, VARINT, VARINT, EIGHT_BYTES, FOUR_BYTES, VARINT, LENGTH, -1, LENGTH, LENGTH,
   VARINT, VARINT, FOUR_BYTES, EIGHT_BYTES, VARINT, VARINT
 ];
+
+/** A message of any type, as it is read or written. */
+type Fields = {
+  [field: string]: unknown
+};
 
 export interface EnumType {
   name: string;
@@ -38,8 +43,9 @@ export interface Field {
   oneof: Field[]|null; // all fields of its oneof
   message: MessageType|null;
   values: EnumType|null;
-  /** The field's options, with extensions by name, such as `rules`. */
-  options: Message;
+  is_wide: boolean; // a 64-bit integer beyond 2^53 is a bigint
+  /** The field's options, with extensions by name. */
+  options: {rules?: RequestRules};
 }
 
 export interface MessageType {
@@ -73,6 +79,36 @@ const bootstrap: {[message: string]: BootstrapField[]} = {
   EnumValueDescriptorProto: [["name", 1, STRING], ["number", 2, INT32]],
 };
 
+// What these messages contain after reading.
+interface EnumDescription {
+  name?: string;
+  value?: {name?: string; number?: number}[];
+}
+interface FieldDescription {
+  name?: string;
+  extendee?: string;
+  number?: number;
+  label?: number;
+  type?: number;
+  type_name?: string;
+  options?: Uint8Array;
+  oneof_index?: number;
+  proto3_optional?: boolean;
+}
+interface MessageDescription {
+  name?: string;
+  field?: FieldDescription[];
+  nested_type?: MessageDescription[];
+  enum_type?: EnumDescription[];
+}
+interface FileDescription {
+  package?: string;
+  message_type?: MessageDescription[];
+  enum_type?: EnumDescription[];
+  extension?: FieldDescription[];
+  syntax?: string;
+}
+
 function bootstrap_types(): Map<string, MessageType> {
   const types = new Map<string, MessageType>();
   for (const name of Object.keys(bootstrap)) {
@@ -89,6 +125,7 @@ function bootstrap_types(): Map<string, MessageType> {
         oneof: null,
         message: message === undefined ? null : types.get(message)!,
         values: null,
+        is_wide: false,
         options: {}
       });
     }
@@ -112,7 +149,8 @@ export class Schema {
 
   /** descriptor: a serialised google.protobuf.FileDescriptorSet that contains every file that it imports. */
   constructor(descriptor: Uint8Array) {
-    const files: Message[] = read(bootstrap_types().get("FileDescriptorSet")!, descriptor).file ?? [];
+    const {file: files = []}: {file?: FileDescription[]} =
+      read(bootstrap_types().get("FileDescriptorSet")!, descriptor);
     for (const file of files) {
       this.#add_names(file, file.package ?? "", file.message_type ?? []);
     }
@@ -165,33 +203,27 @@ export class Schema {
     return [...numbers].sort((a, b) => a[1] - b[1]).map(([value]) => value);
   }
 
-  decode(type: string, bytes: Uint8Array): Message {
+  decode<Name extends keyof Messages>(type: Name, bytes: Uint8Array): Messages[Name] {
     return read(this.type(type), bytes);
   }
 
-  encode(type: string, message: Message): Uint8Array {
+  encode<Name extends keyof Messages>(type: Name, message: Messages[Name]): Uint8Array {
     return write(this.type(type), message);
   }
 
   /** Returns the rules of every kind of request that the server knows, by the name of its field in Request. */
-  request_rules(): Map<string, RequestRules> {
-    const rules = new Map<string, RequestRules>();
+  request_rules(): Map<keyof RequestKinds, RequestRules> {
+    const rules = new Map<keyof RequestKinds, RequestRules>();
     for (const field of this.type("evod.v1.Request").fields) {
-      const option: Message|undefined = field.options.rules;
-      if (option !== undefined) {
-        rules.set(field.name, {
-          kind: String(option.kind ?? "REQUEST_KIND_UNSPECIFIED"),
-          role: String(option.role ?? "ROLE_UNSPECIFIED"),
-          viewer_in_own_replay: option.viewer_in_own_replay ?? false,
-          answer: option.answer ?? ""
-        });
+      if (field.options.rules !== undefined) {
+        rules.set(field.name as keyof RequestKinds, field.options.rules);
       }
     }
     return rules;
   }
 
-  #add_names(file: Message, prefix: string, messages: Message[]): void {
-    const add_enums = (scope: string, enums: Message[]) => {
+  #add_names(file: FileDescription, prefix: string, messages: MessageDescription[]): void {
+    const add_enums = (scope: string, enums: EnumDescription[]) => {
       for (const description of enums) {
         const name = join(scope, description.name ?? "");
         const values: EnumType = {name, names: new Map(), numbers: new Map()};
@@ -211,7 +243,8 @@ export class Schema {
     });
   }
 
-  #each_message(scope: string, messages: Message[], what: (name: string, message: Message) => void): void {
+  #each_message(
+    scope: string, messages: MessageDescription[], what: (name: string, message: MessageDescription) => void): void {
     for (const message of messages) {
       const name = join(scope, message.name ?? "");
       what(name, message);
@@ -219,8 +252,8 @@ export class Schema {
     }
   }
 
-  #field_of(description: Message, proto3: boolean): Field {
-    const name: string = description.name ?? "", type: number = description.type ?? 0;
+  #field_of(description: FieldDescription, proto3: boolean): Field {
+    const name = description.name ?? "", type = description.type ?? 0;
     const type_name = (description.type_name ?? "").replace(/^\./, "");
     const message = type === MESSAGE ? this.#types.get(type_name) ?? null : null;
     const values = type === ENUM ? this.#enums.get(type_name) ?? null : null;
@@ -237,6 +270,7 @@ export class Schema {
       oneof: null,
       message,
       values,
+      is_wide: wide_fields.has(name),
       options: {},
       has_presence: !proto3 || type === MESSAGE || description.oneof_index !== undefined
     };
@@ -348,18 +382,20 @@ class Reader {
       case FIXED64:
       case SFIXED64: {
         const at = this.take(8);
-        return whole(this.#view.getUint32(at, true), this.#view.getUint32(at + 4, true), field.type === SFIXED64);
+        return whole(
+          this.#view.getUint32(at, true), this.#view.getUint32(at + 4, true), field.type === SFIXED64, field.is_wide);
       }
     }
     this.#varint();
     switch (field.type) {
       case INT64:
-        return whole(this.#low, this.#high, true);
+        return whole(this.#low, this.#high, true, field.is_wide);
       case UINT64:
-        return whole(this.#low, this.#high, false);
+        return whole(this.#low, this.#high, false, field.is_wide);
       case SINT64: {
         const sign = -(this.#low & 1);
-        return whole(((this.#low >>> 1 | this.#high << 31) ^ sign) >>> 0, (this.#high >>> 1 ^ sign) >>> 0, true);
+        return whole(
+          ((this.#low >>> 1 | this.#high << 31) ^ sign) >>> 0, (this.#high >>> 1 ^ sign) >>> 0, true, field.is_wide);
       }
       case BOOL:
         return this.#low !== 0 || this.#high !== 0;
@@ -410,23 +446,24 @@ class Reader {
   }
 }
 
-/** Returns a 64-bit integer as a number if that is exact, otherwise as a bigint. */
-function whole(low: number, high: number, is_signed: boolean): number|bigint {
+/** Returns a 64-bit integer: as a bigint if it is wide and a number would not be exact, otherwise as a number. */
+function whole(low: number, high: number, is_signed: boolean, is_wide: boolean): number|bigint {
   const top = is_signed ? high | 0 : high;
-  if (top >= -0x200000 && top < 0x200000) {
+  if (!is_wide || (top >= -0x200000 && top < 0x200000)) {
     return top * 0x100000000 + low;
   }
   return (BigInt(top) << 32n) | BigInt(low);
 }
 
-function read(type: MessageType, bytes: Uint8Array): Message {
-  const message: Message = {};
+/** Message: what the type describes. */
+function read<Message extends object>(type: MessageType, bytes: Uint8Array): Message {
+  const message: Fields = {};
   read_fields(new Reader(bytes), type, message, depth_max);
-  return message;
+  return message as Message;
 }
 
 /** Reads fields up to reader.end. */
-function read_fields(reader: Reader, type: MessageType, message: Message, depth: number): void {
+function read_fields(reader: Reader, type: MessageType, message: Fields, depth: number): void {
   while (reader.at < reader.end) {
     const tag = reader.tag(), number = tag >>> 3, wire_type = tag & 7;
     const field = type.by_number.get(number);
@@ -434,7 +471,7 @@ function read_fields(reader: Reader, type: MessageType, message: Message, depth:
     if (field === undefined || (wire_type !== own && !(field.repeated && wire_type === LENGTH && own !== LENGTH))) {
       reader.skip(number, wire_type, depth);
     } else if (field.repeated) {
-      read_repeated(reader, field, message[field.name] ??= [], wire_type !== own, depth);
+      read_repeated(reader, field, (message[field.name] ??= []) as unknown[], wire_type !== own, depth);
     } else {
       if (field.oneof !== null && message[field.name] === undefined) {
         for (const other of field.oneof) {
@@ -460,7 +497,7 @@ function read_repeated(reader: Reader, field: Field, values: unknown[], is_packe
 }
 
 /** before: the value of a message so far; later parts are merged into it. */
-function read_value(reader: Reader, field: Field, before: Message|undefined, depth: number): unknown {
+function read_value(reader: Reader, field: Field, before: unknown, depth: number): unknown {
   switch (field.type) {
     case STRING:
       return reader.string();
@@ -470,7 +507,7 @@ function read_value(reader: Reader, field: Field, before: Message|undefined, dep
       if (depth === 0) {
         throw new DamagedData(`a message is nested more than ${depth_max} deep`);
       }
-      const message = before ?? {}, outer_end = reader.end;
+      const message = (before ?? {}) as Fields, outer_end = reader.end;
       reader.end = reader.end_of_length();
       read_fields(reader, field.message!, message, depth - 1);
       reader.end = outer_end;
@@ -561,26 +598,26 @@ class Writer {
         if (number === undefined) {
           throw wrong(path, value, [...field.values!.numbers.keys()].join(", "));
         }
-        this.#signed(whole_of(number, path, -0x80000000, 0x7fffffff));
+        this.#write_signed(whole_of(number, path, -0x80000000, 0x7fffffff));
         break;
       }
       case UINT32:
         this.varint(Number(whole_of(value, path, 0, 0xffffffff)));
         break;
       case INT32:
-        this.#signed(whole_of(value, path, -0x80000000, 0x7fffffff));
+        this.#write_signed(whole_of(value, path, -0x80000000, 0x7fffffff));
         break;
       case UINT64:
-        this.#unsigned(whole_of(value, path, 0, 0xffffffffffffffffn));
+        this.#write_unsigned(whole_of(value, path, 0, 0xffffffffffffffffn));
         break;
       case INT64:
-        this.#signed(whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn));
+        this.#write_signed(whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn));
         break;
       case SINT32:
       case SINT64: {
         const bits = field.type === SINT32 ? 32n : 64n;
         const number = BigInt(whole_of(value, path, -(1n << (bits - 1n)), (1n << (bits - 1n)) - 1n));
-        this.#unsigned(number < 0n ? -2n * number - 1n : 2n * number);
+        this.#write_unsigned(number < 0n ? -2n * number - 1n : 2n * number);
         break;
       }
       case FIXED32:
@@ -600,22 +637,21 @@ class Writer {
     }
   }
 
-#unsigned(value: number|bigint) : void {
-  if(typeof value === "number" && Number.isSafeInteger(value)) {
-    this.varint(value >>> 0, Math.floor(value / 0x100000000));
+  #write_unsigned(value: number|bigint): void {
+    if (typeof value === "number" && Number.isSafeInteger(value)) {
+      this.varint(value >>> 0, Math.floor(value / 0x100000000));
+    } else {
+      this.varint(Number(BigInt(value) & 0xffffffffn), Number(BigInt(value) >> 32n));
+    }
   }
-  else {
-    this.varint(Number(BigInt(value) & 0xffffffffn), Number(BigInt(value) >> 32n));
+
+  #write_signed(value: number|bigint): void {
+    this.#write_unsigned(value < 0 ? BigInt.asUintN(64, BigInt(value)) : value);
   }
-}
 
-#signed(value: number|bigint) : void {
-this.#unsigned(value < 0 ? BigInt.asUintN(64, BigInt(value)) : value);
-}
-
-take(): Uint8Array {
-  return this.#data.slice(0, this.length);
-}
+  take(): Uint8Array {
+    return this.#data.slice(0, this.length);
+  }
 }
 
 function wrong(path: string, got: unknown, allowed: string): InvalidMessage {
@@ -638,13 +674,13 @@ function whole_of(value: unknown, path: string, min: number|bigint, max: number|
   return value as number | bigint;
 }
 
-function write(type: MessageType, message: Message): Uint8Array {
+function write(type: MessageType, message: object): Uint8Array {
   const writer = new Writer();
   write_fields(writer, type, message, "", depth_max);
   return writer.take();
 }
 
-function write_fields(writer: Writer, type: MessageType, message: Message, path: string, depth: number): void {
+function write_fields(writer: Writer, type: MessageType, message: object, path: string, depth: number): void {
   if (typeof message !== "object" || message === null || Array.isArray(message)) {
     throw wrong(path, message, `a ${type.name}`);
   }
@@ -710,7 +746,7 @@ function write_value(writer: Writer, field: Field, value: unknown, path: string,
         throw new InvalidMessage(`${path}: nested more than ${depth_max} deep`);
       }
       const begin = writer.length;
-      write_fields(writer, field.message!, value as Message, path, depth - 1);
+      write_fields(writer, field.message!, value as object, path, depth - 1);
       writer.insert_length(begin);
       break;
     }

@@ -3,6 +3,8 @@
 // Positions, radii, half sizes and health are whole numbers of 1/16 px or 1/16; headings are 1/256 of a full turn, from
 // +x toward +y. All columns of a kind have the same length. Row i of each column describes the same entity.
 
+import type {LiveStatistics, RunState, Speed} from "./protocol";
+
 export const steps_per_px = 16;
 
 export interface Organisms {
@@ -50,19 +52,19 @@ export interface SnapshotInfo {
   run_id: string; // 32 hexadecimal digits
   island: number;
   island_count: number;
-  sequence: number|bigint;
+  sequence: number;
   tick: number;
   generation: number;
   generation_tick: number;
   simulated_s: number;
-  state: string; // "RUN_STATE_RUNNING"
-  speed: {real_time_factor?: number; max?: boolean}|undefined;
+  state: RunState;
+  speed: Speed|undefined;
   state_hash: string; // 32 hexadecimal digits
   width_px: number;
   height_px: number;
   item_radius_px: number;
   tile_px: number; // side of the tiles; 0: the snapshot has no tiles
-  live: {[field: string]: any}|undefined; // LiveStatistics
+  live: LiveStatistics|undefined;
   ticks_per_s: number;
   slowed: boolean;
   dropped_count: number;

@@ -194,7 +194,7 @@ function info_of(frame: Message, same: Unchanging): SnapshotInfo {
     generation: Number(frame.generation ?? 0),
     generation_tick: Number(frame.generation_tick ?? 0),
     simulated_s: frame.simulated_s ?? 0,
-    state: String(frame.state ?? "RUN_STATE_UNSPECIFIED"),
+    state: frame.state ?? "RUN_STATE_UNSPECIFIED",
     speed: frame.speed,
     state_hash: hexadecimal(frame.state_hash),
     live: frame.live,

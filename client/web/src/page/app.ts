@@ -1,5 +1,5 @@
 // App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices below.
-import type {Message} from "../core/messages";
+import type {Message, RequestKind} from "../core/messages";
 import {panels} from "../panels/all";
 import {unused_name} from "../panels/new_world";
 import {Column} from "./column";
@@ -330,7 +330,7 @@ export class App implements KeyTarget {
   #announce(event: Message): void {
     const kind = Object.keys(noticed_events).find((name) => event[name] !== undefined);
     const shown = this.areas.some((area) => area.world.name === event.world || area.world.shown === event.world);
-    if (kind && shown && !noticed_events[kind]!.some((command) => this.server.has_sent(command, event.world))) {
+    if (kind && shown && !noticed_events[kind]!.some((command) => this.server.has_sent(command as RequestKind, event.world))) {
       this.notify(event_text(event)[0] + ".");
     }
   }

@@ -1,4 +1,5 @@
 // keys: the keys of the whole page, and the help that lists them. Keys of the canvas (pan, zoom) belong to Pane.
+import type {RequestKind} from "../core/messages";
 import {Dialog} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
@@ -230,7 +231,7 @@ export class Help {
 }
 
 /** Runs a command, or shows why the user may not. */
-async function command(app: KeyTarget, kind: string, act: () => Promise<void>): Promise<void> {
+async function command(app: KeyTarget, kind: RequestKind, act: () => Promise<void>): Promise<void> {
   const world = app.world(), why = app.server.why_not(kind, world.shown);
   if (!world.shown) {
     return;

@@ -2,7 +2,7 @@
 //
 // The pane sends "pane", "close_pane", "resize", "camera", "pointer" and "pick" to the worker, which draws. ViewedWorld sends
 // "watch", "look", "select" and "population".
-import type {Camera, Drawing, FromWorker, Message, ToWorker, Tool} from "../core/messages";
+import type {Camera, Drawing, FromWorker, Message, RequestKind, ToWorker, Tool} from "../core/messages";
 import {contains, fitted, is_whole_island_visible, minimap_place, panned, Point, Size, zoomed} from "../render/camera";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -537,7 +537,7 @@ export class Pane {
       };
     }
     try {
-      await world.server.request(kind, fields);
+      await world.server.request(kind as RequestKind, fields);
     } catch (error) {
       this.options.notify(error instanceof Error ? error.message : String(error));
     }

@@ -7,7 +7,19 @@ import {refusal_text} from "../texts/texts";
 import {Changes} from "./changes";
 import {of_tab} from "./storage";
 
-import type {ConnectionState, FromWorker, Message, RequestRules, ToWorker} from "../core/messages";
+import {
+  type ConnectionState,
+  type Figures,
+  type FromWorker,
+  kind_of,
+  none_left,
+  type RequestKind,
+  type ToWorker
+} from "../core/messages";
+import type {
+  Answers, DamagedWorld, Event, Limits, ParameterDescription, RequestKinds, RequestRules, Response, Role, Storage,
+  WorldInfo} from "../core/protocol";
+import type {Snapshot} from "../core/snapshot";
 
 /** A refusal of the server. `violations` name the wrong fields. */
 export class Refusal extends Error {
@@ -19,42 +31,50 @@ export class Refusal extends Error {
 }
 
 /** Requests that change something for other clients. */
-const changing_kinds = new Set(["REQUEST_KIND_COMMAND", "REQUEST_KIND_LEASE", "REQUEST_KIND_SERVER"]);
+const changing_kinds: ReadonlySet<string> =
+  new Set(["REQUEST_KIND_COMMAND", "REQUEST_KIND_LEASE", "REQUEST_KIND_SERVER"]);
 
 const own_event_ms = 3000;
 
 type Waiting = {
-  kind: string; fields: Message; resolve: (response: Message) => void; reject: (error: Refusal) => void
+  kind: RequestKind; world: string; resolve: (response: Response) => void; reject: (error: Refusal) => void
 };
+
+/** A WorldInfo that always has these fields. */
+export type KnownWorld = WorldInfo&Required<Pick<WorldInfo, "name"|"run_id"|"tick"|"generation"|"island_count">>;
+
+function known_world(info: WorldInfo): KnownWorld {
+  return {name: "", run_id: "", tick: 0, generation: 1, island_count: 1, ...info};
+}
 
 export class Server {
   state: ConnectionState = {phase: "connecting", message: "", code: "", welcome: null};
-  /** The registry: ParameterDescription messages, in order. Empty until the session is open. */
-  parameters: Message[] = [];
-  limits: Message = {};
-  /** All worlds: WorldInfo messages, sorted by name; kept up to date by events. Includes the replays of this page. */
-  worlds: Message[] = [];
-  /** The worlds that do not run because the server cannot restore them: DamagedWorld messages, sorted by name. */
-  damaged: Message[] = [];
+  /** The registry, in order. Empty until the session is open. */
+  parameters: ParameterDescription[] = [];
+  limits: Limits = {};
+  /** All worlds, sorted by name; kept up to date by events. Includes the replays of this page. */
+  worlds: KnownWorld[] = [];
+  /** The worlds that do not run because the server cannot restore them, sorted by name. */
+  damaged: (DamagedWorld&{name: string})[] = [];
   /** Whether the list of worlds of the present session has arrived. */
   worlds_known = false;
   features: ReadonlySet<string> = new Set();
-  /** Storage message: whether the server can write runs. null: it stores none. */
-  storage: Message|null = null;
+  /** Whether the server can write runs. null: it stores none. */
+  storage: Storage|null = null;
   /** The server said that it is shutting down. */
   going_away = false;
   /** The server that answered after a reconnect has another version than the one that served this page. */
   updated = false;
 
   #worker: Worker;
-  #rules = new Map<string, RequestRules>(); // by the field of Request
+  #rules = new Map<RequestKind, RequestRules>();
   #roles: string[] = []; // in rising order
   #last_id = 0;
   #waiting = new Map<number, Waiting>();
   #sent_ms = new Map<string, number>(); // when commands were sent last, by kind and world
   #replays = new Set<string>(); // names of the replays that this session has opened
   #changes = new Changes(false);
-  #event_listeners = new Set<(event: Message) => void>();
+  #event_listeners = new Set<(event: Event) => void>();
   #message_listeners = new Set<(message: FromWorker) => void>();
   #first_version = "";
   #instance = "";
@@ -92,12 +112,12 @@ export class Server {
     return this.#changes.listen(listener);
   }
 
-  on_event(listener: (event: Message) => void): () => void {
+  on_event(listener: (event: Event) => void): () => void {
     this.#event_listeners.add(listener);
     return () => this.#event_listeners.delete(listener);
   }
 
-  get role(): string {
+  get role(): Role {
     return this.state.welcome?.role ?? "ROLE_UNSPECIFIED";
   }
 
@@ -116,13 +136,13 @@ export class Server {
     this.#changes.notify();
   }
 
-  /** Whether the user may send this request now, such as "set_parameters". `world` may be a replay that this page opened. */
-  may(kind: string, world?: string): boolean {
+  /** Whether the user may send this request now. `world` may be a replay that this page opened. */
+  may(kind: RequestKind, world?: string): boolean {
     return this.why_not(kind, world) === "";
   }
 
   /** Why the user may not send this request now, as a sentence; empty if he may. */
-  why_not(kind: string, world?: string): string {
+  why_not(kind: RequestKind, world?: string): string {
     if (this.state.phase !== "open") {
       return "There is no connection to the server.";
     }
@@ -134,18 +154,19 @@ export class Server {
     if (own_replay && rule.viewer_in_own_replay) {
       return "";
     }
-    if (this.#roles.indexOf(this.role) < this.#roles.indexOf(rule.role)) {
+    if (this.#roles.indexOf(this.role) < this.#roles.indexOf(rule.role ?? "ROLE_UNSPECIFIED")) {
       return rule.role === "ROLE_ADMIN" && this.role !== "ROLE_VIEWER" ?
         "Only the role admin may create and delete worlds." :
         "You are connected as a viewer: read-only.";
     }
-    return changing_kinds.has(rule.kind) && !this.taking_part ?
+    return changing_kinds.has(rule.kind ?? "") && !this.taking_part ?
       "You are watching. Turn on “Take part” to change worlds." :
       "";
   }
 
-  /** Whether this page has sent such a command to the world within the last own_event_ms: an event about it is then no news. */
-  has_sent(kind: string, world: string): boolean {
+  /** Whether this page has sent such a command to the world within the last own_event_ms, so that the user knows of the
+   *  event about it. */
+  has_sent(kind: RequestKind, world: string): boolean {
     return performance.now() - (this.#sent_ms.get(`${kind} ${world}`) ?? -Infinity) < own_event_ms;
   }
 
@@ -153,7 +174,7 @@ export class Server {
     return this.#replays.has(world);
   }
 
-  world(name: string): Message|null {
+  world(name: string): KnownWorld|null {
     return this.worlds.find((world) => world.name === name) ?? null;
   }
 
@@ -164,36 +185,38 @@ export class Server {
 
   /** The names of all worlds except replays, damaged ones too, in alphabetical order. */
   get world_names(): string[] {
-    return [...this.worlds.filter((world) => !world.replay), ...this.damaged]
-      .map((world) => world.name as string)
-      .sort();
+    return [...this.worlds.filter((world) => !world.replay), ...this.damaged].map((world) => world.name).sort();
   }
 
   /** Sends {[kind]: fields}. Resolves with the answer inside the Response. Rejects with Refusal. */
-  async request(kind: string, fields: Message): Promise<Message> {
-    const response = await this.respond(kind, fields);
-    return (response[this.#rules.get(kind)?.answer ?? ""] as Message | undefined) ?? {};
+  async request<Kind extends RequestKind>(kind: Kind, fields: RequestKinds[Kind]): Promise<Answers[Kind]> {
+    const response = await this.respond(kind, fields), answer = this.#rules.get(kind)?.answer;
+    return (answer ? response[answer as keyof Response] ?? {} : {}) as
+      Answers[Kind]; // the rules of `kind` name its answer
   }
 
   /** Sends {[kind]: fields}. Resolves with the whole Response; applied_tick is there. Rejects with Refusal. */
-  respond(kind: string, fields: Message): Promise<Message> {
+  respond<Kind extends RequestKind>(kind: Kind, fields: RequestKinds[Kind]): Promise<Response> {
     return new Promise((resolve, reject) => {
-      const id = ++this.#last_id;
-      this.#waiting.set(id, {kind, fields, resolve, reject});
+      const id = ++this.#last_id, {world, name} = fields as {
+        world?: string;
+        name?: string
+      };
+      this.#waiting.set(id, {kind, world: world ?? "", resolve, reject});
       if (changing_kinds.has(this.#rules.get(kind)?.kind ?? "")) {
-        this.#sent_ms.set(`${kind} ${fields.world ?? fields.name}`, performance.now());
+        this.#sent_ms.set(`${kind} ${world ?? name}`, performance.now());
       }
       this.post({kind: "request", id, request: {[kind]: fields}});
     });
   }
 
   /** For tests and benchmarks: figures of the worker. */
-  figures(): Promise<Message> {
+  figures(): Promise<Figures> {
     return this.#ask((id) => ({kind: "ask_figures", id}));
   }
 
   /** For tests: the entities of the newest snapshot in a pane; null if there is none. */
-  columns(pane: number): Promise<Message|null> {
+  columns(pane: number): Promise<Snapshot|null> {
     return this.#ask((id) => ({kind: "ask_columns", pane, id}));
   }
 
@@ -256,10 +279,10 @@ export class Server {
     this.state = state;
     if (opened && state.welcome) {
       this.going_away = false;
-      this.features = new Set<string>(state.welcome.features ?? []);
+      this.features = new Set(state.welcome.features);
       this.limits = state.welcome.limits ?? {};
       this.storage = state.welcome.storage ?? null;
-      const version: string = state.welcome.server_version ?? "";
+      const version = state.welcome.server_version ?? "";
       this.#first_version ||= version;
       this.updated = version !== this.#first_version;
       void this.#open(state.welcome.instance_id ?? "");
@@ -291,29 +314,29 @@ export class Server {
     const list = await this.request("list_worlds", {});
     const replays = this.worlds.filter((world) => this.#replays.has(world.name));
     this.worlds = [
-      ...(list.worlds ?? []),
-      ...replays.filter((replay) => !(list.worlds ?? []).some((world: Message) => world.name === replay.name))
+      ...(list.worlds ?? []).map(known_world),
+      ...replays.filter((replay) => !(list.worlds ?? []).some((world) => world.name === replay.name))
     ];
     this.#sort();
-    this.damaged = list.damaged ?? [];
+    this.damaged = (list.damaged ?? []).map((world) => ({name: "", ...world}));
     this.worlds_known = true;
     this.#changes.notify();
   }
 
-  #take_response(waiting: Waiting, response: Message): void {
-    const status: Message|undefined = response.status;
+  #take_response(waiting: Waiting, response: Response): void {
+    const status = response.status;
     if (status) {
       waiting.reject(new Refusal(
         refusal_text(status), status.code ?? "", status.reason ?? "",
         (status.violations ?? [])
-          .map((one: Message) => ({field: one.field ?? "", allowed: one.allowed ?? "", got: one.got ?? ""}))));
+          .map((one) => ({field: one.field ?? "", allowed: one.allowed ?? "", got: one.got ?? ""}))));
       return;
     }
     if (waiting.kind === "open_replay" && response.world) {
-      this.#replays.add(response.world.name);
+      this.#replays.add(response.world.name ?? "");
     } else if (waiting.kind === "close_replay") {
-      this.#replays.delete(waiting.fields.world);
-      this.#remove(waiting.fields.world);
+      this.#replays.delete(waiting.world);
+      this.#remove(waiting.world);
     }
     if (response.world) {
       this.#put(response.world);
@@ -323,46 +346,80 @@ export class Server {
     waiting.resolve(response);
   }
 
-  #take_event(event: Message): void {
-    const info: Message|undefined =
-      event.run_control_changed?.world ?? event.world_created?.world ?? event.world_reset?.world;
-    if (info) {
-      this.#put(info);
-    } else if (event.world_deleted) {
-      this.#remove(event.world ?? "");
-    } else if (event.world_damaged) {
-      this.#remove(event.world ?? "");
-      this.damaged = [
-        ...this.damaged, {name: event.world, run_id: event.run_id, reason: event.world_damaged.reason}
-      ].sort((one, other) => (one.name! < other.name!? -1 : 1));
-      this.#changes.notify();
-    } else if (event.run_terminated) {
-      this.#change(event.world, {state: "RUN_STATE_TERMINATED", outcome: event.run_terminated.outcome});
-    } else if (event.generation_finished) {
-      const finished: number = event.generation_finished.statistics?.[0]?.generation ?? 0;
-      this.#change(event.world, {generation: finished + 1, tick: event.tick ?? 0, awaited_fitness: undefined});
-    } else if (event.fitness_awaited) {
-      this.#change(event.world, {awaited_fitness: event.fitness_awaited});
-    } else if (event.storage_changed && event.world) {
-      this.#change(event.world, {storage: event.storage_changed.storage});
-    } else if (event.storage_changed) {
-      this.storage = event.storage_changed.storage ?? null;
-      this.#changes.notify();
-    } else if (event.server_going_away) {
-      this.going_away = true;
-      this.#changes.notify();
-    } else if (event.events_dropped) {
-      void this.#list_worlds().catch(() => undefined);
-    }
+  #take_event(event: Event): void {
+    this.#update_by(event);
     for (const listener of [...this.#event_listeners]) {
       listener(event);
     }
   }
 
+  /** Keeps what is known about worlds and storage up to date. */
+  #update_by(event: Event): void {
+    const world = event.world ?? "", about = kind_of(event);
+    switch (about?.kind) {
+      case "run_control_changed":
+      case "world_created":
+      case "world_reset":
+        if (about.value.world) {
+          this.#put(about.value.world);
+        }
+        return;
+      case "world_deleted":
+        this.#remove(world);
+        return;
+      case "world_damaged":
+        this.#remove(world);
+        this.damaged = [...this.damaged, {name: world, run_id: event.run_id, reason: about.value.reason}].sort(
+          (one, other) => (one.name < other.name ? -1 : 1));
+        this.#changes.notify();
+        return;
+      case "run_terminated":
+        this.#change(world, {state: "RUN_STATE_TERMINATED", outcome: about.value.outcome});
+        return;
+      case "generation_finished": {
+        const finished = about.value.statistics?.[0]?.generation ?? 0;
+        this.#change(world, {generation: finished + 1, tick: event.tick ?? 0, awaited_fitness: undefined});
+        return;
+      }
+      case "fitness_awaited":
+        this.#change(world, {awaited_fitness: about.value});
+        return;
+      case "storage_changed":
+        if (world) {
+          this.#change(world, {storage: about.value.storage});
+        } else {
+          this.storage = about.value.storage ?? null;
+          this.#changes.notify();
+        }
+        return;
+      case "server_going_away":
+        this.going_away = true;
+        this.#changes.notify();
+        return;
+      case "events_dropped":
+        void this.#list_worlds().catch(() => undefined);
+        return;
+      case "parameters_changed":
+      case "migration":
+      case "extinction":
+      case "change_dropped":
+      case "change_planned":
+      case "change_cancelled":
+      case "placed":
+      case "removed":
+      case "fitness_set":
+      case undefined:
+        return;
+      default:
+        none_left(about);
+    }
+  }
+
   /** Takes a WorldInfo unless a newer one of the same run is known. An event about a command may arrive late. */
-  #put(info: Message): void {
+  #put(world: WorldInfo): void {
+    const info = known_world(world);
     const known = this.world(info.name);
-    if (known && known.run_id === info.run_id && !info.replay && Number(known.tick ?? 0) > Number(info.tick ?? 0)) {
+    if (known && known.run_id === info.run_id && !info.replay && known.tick > info.tick) {
       return;
     }
     this.worlds = [...this.worlds.filter((world) => world.name !== info.name), info];
@@ -370,7 +427,7 @@ export class Server {
     this.#changes.notify();
   }
 
-  #change(name: string, fields: Message): void {
+  #change(name: string, fields: Partial<KnownWorld>): void {
     const known = this.world(name);
     if (known) {
       this.worlds = this.worlds.map((world) => (world === known ? {...world, ...fields} : world));

@@ -11,7 +11,7 @@ import {Refusal, type Server} from "./server";
 import {of_browser} from "./storage";
 import type {Moment, RunRange} from "./time_scale";
 import {default_look} from "../render/look";
-import type {Drawing, FromWorker, Look, Message, PopulationColumns} from "../core/messages";
+import type {Drawing, FromWorker, Look, Message, PopulationColumns, RequestKind} from "../core/messages";
 import type {SnapshotInfo} from "../core/snapshot";
 
 const rate_default_hz = 30; // snapshots per second
@@ -334,13 +334,13 @@ export class ViewedWorld {
         const info = await this.server.request("open_replay", {world: name, at: moment});
         if (name !== this.name || this.#moment === null || this.#replay) {
           await this.server.request(
-            "close_replay", {world: info.name}); // another world, the live world or another replay is shown now
+            "close_replay", {world: info.name ?? ""}); // another world, the live world or another replay is shown now
           return;
         }
-        this.#replay = info.name;
+        this.#replay = info.name ?? "";
         const {first_generation = 1, first_tick = 0} = info.replay ?? {};
-        this.#begin = {run_id: info.run_id, generation: Number(first_generation), tick: Number(first_tick)};
-        this.#watch(info.name, this.island);
+        this.#begin = {run_id: info.run_id ?? "", generation: Number(first_generation), tick: Number(first_tick)};
+        this.#watch(this.#replay, this.island);
         if (number !== this.#seek_number) { // another moment was asked for meanwhile
           return await this.show_moment(this.#moment);
         }
@@ -491,7 +491,7 @@ export class ViewedWorld {
     return this.set_speed(this.speed?.max ? {real_time_factor: this.#factor} : {max: true});
   }
 
-  async #command(assumed: {state?: string; speed?: Message}, kind: string, fields: Message): Promise<void> {
+  async #command(assumed: {state?: string; speed?: Message}, kind: RequestKind, fields: Message): Promise<void> {
     this.#unanswered += 1;
     if (this.server.may(kind, this.shown)) {
       this.#assumed = {...this.#assumed, ...assumed};
