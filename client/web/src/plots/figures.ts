@@ -1,7 +1,7 @@
 // figures: the plots of one history, or of one history compared with another. Pure functions.
 import {plot_texts} from "../texts/plot";
 import {figure_texts as texts} from "../texts/plots_panel";
-import type {HistoryTable, Island} from "./history_table";
+import type {AccountPart, Column, GenePart, HistoryTable, Island} from "./history_table";
 import {thickness_default} from "./plot_content";
 import type {Marks, PlotContent, Series, SeriesColour} from "./plot_content";
 import {compare_dash, histogram, range_of, running_mean} from "./plot_layout";
@@ -91,11 +91,11 @@ class FigureBuilder {
    *  compared      whether the same column of the other subject gets a line, too
    *  whole         the numbers are counts
    *  other_column  the column of the other subject, if its name differs; null: it has no such column */
-  line(column: string, name: string, colour: SeriesColour, style: Style, {
+  line(column: Column, name: string, colour: SeriesColour, style: Style, {
     compared,
     whole = false,
     other_column = column
-  }: {compared: boolean; whole?: boolean; other_column?: string | null}): void {
+  }: {compared: boolean; whole?: boolean; other_column?: Column | null}): void {
     const other = this.#other;
     const is_compared = other !== null && compared && other_column !== null && is_known(column_of(other, other_column));
     this.#add_line(this.#subject, column, {name, colour, ...style, ...(is_compared ? {dash: []} : {}), whole});
@@ -109,7 +109,9 @@ class FigureBuilder {
   }
 
   /** Adds a line for a number of a gene, if the subject has this gene. */
-  gene_line(gene: string, part: string, name: string, colour: SeriesColour, style: Style, compared: boolean): void {
+  gene_line(
+    gene: string, part: GenePart|AccountPart, name: string, colour: SeriesColour, style: Style,
+    compared: boolean): void {
     const column = gene_column(this.#subject, gene, part);
     if (column !== null) {
       const other_column = this.#other === null ? null : gene_column(this.#other, gene, part);
@@ -118,7 +120,7 @@ class FigureBuilder {
   }
 
   /** Adds a line for the same number of each of several genes. */
-  gene_lines(genes: readonly string[], part: string): void {
+  gene_lines(genes: readonly string[], part: GenePart|AccountPart): void {
     genes.forEach((gene, i) => {
       const {colour, ...style} = gene_style(i);
       this.gene_line(gene, part, gene, colour, style, true);
@@ -127,9 +129,9 @@ class FigureBuilder {
 
   /** Adds a band of one standard deviation on either side of the mean, as far as it is within the range of the
    *  values. */
-  band(prefix: string, least: string, greatest: string, colour: SeriesColour): void {
-    const mean = column_of(this.#subject, `${prefix}mean`), deviation = column_of(this.#subject, `${prefix}deviation`);
-    const min = column_of(this.#subject, least), max = column_of(this.#subject, greatest);
+  band(of: {mean: Column; deviation: Column; least: Column; greatest: Column}, colour: SeriesColour): void {
+    const mean = column_of(this.#subject, of.mean), deviation = column_of(this.#subject, of.deviation);
+    const min = column_of(this.#subject, of.least), max = column_of(this.#subject, of.greatest);
     if (!is_known(mean)) {
       return;
     }
@@ -145,7 +147,7 @@ class FigureBuilder {
     });
   }
 
-  stack(column: string, name: string, colour: SeriesColour): void {
+  stack(column: Column, name: string, colour: SeriesColour): void {
     const y = column_of(this.#subject, column);
     if (is_known(y)) {
       this.content.series.push({
@@ -160,7 +162,7 @@ class FigureBuilder {
   }
 
   /** Adds a dashed line over the stacks for a column of the other subject. */
-  compare(column: string, name: string, colour: SeriesColour): void {
+  compare(column: Column, name: string, colour: SeriesColour): void {
     if (this.#other !== null) {
       this.#add_line(
         this.#other, column, {...plain, name: this.#named(name, this.#other), colour, dash: compare_dash, whole: true});
@@ -171,7 +173,7 @@ class FigureBuilder {
     return this.#other === null ? name : texts.series_of(name, subject.name);
   }
 
-  #add_line(subject: Subject, column: string, line: Omit<Series, "kind"|"x"|"y">): void {
+  #add_line(subject: Subject, column: Column, line: Omit<Series, "kind"|"x"|"y">): void {
     const raw = column_of(subject, column);
     if (is_known(raw)) {
       const series: Series = {kind: "line", ...line, x: column_of(subject, "generation"), y: raw};
@@ -180,7 +182,7 @@ class FigureBuilder {
   }
 }
 
-function column_of(subject: Subject, name: string): number[] {
+function column_of(subject: Subject, name: Column): number[] {
   return subject.table.column(subject.island, name);
 }
 
@@ -195,7 +197,7 @@ function starts_at_zero(subject: Subject): boolean {
 }
 
 /** Returns the name of a column of a gene; null if the subject has no such gene. */
-function gene_column(subject: Subject, gene: string, part: string): string|null {
+function gene_column(subject: Subject, gene: string, part: GenePart|AccountPart): Column|null {
   const index = subject.gene_names.indexOf(gene);
   return index >= 0 ? `gene:${index}:${part}` : null;
 }
@@ -256,7 +258,8 @@ function build_fitness(make: FigureBuilder, subject: Subject): void {
   make.line("fitness_mean", mean, "blue", thick, {compared: true});
   make.line("fitness_median", median, "sky", dotted, {compared: false});
   make.line("fitness_worst", worst, "grey", thin, {compared: false});
-  make.band("fitness_", "fitness_worst", "fitness_best", "blue");
+  make.band(
+    {mean: "fitness_mean", deviation: "fitness_deviation", least: "fitness_worst", greatest: "fitness_best"}, "blue");
 }
 
 function build_genes(make: FigureBuilder, {subject, genes, gene}: FigureRequest): void {
@@ -271,9 +274,10 @@ function build_genes(make: FigureBuilder, {subject, genes, gene}: FigureRequest)
   make.gene_line(gene, "mean", mean, "green", thick, true);
   make.gene_line(gene, "max", greatest, "grey", thin, false);
   make.gene_line(gene, "min", least, "grey", dotted, false);
-  const column = gene_column(subject, gene, "");
-  if (column !== null) {
-    make.band(column, `${column}min`, `${column}max`, "green");
+  const index = subject.gene_names.indexOf(gene);
+  if (index >= 0) {
+    const of = (part: GenePart): Column => `gene:${index}:${part}`;
+    make.band({mean: of("mean"), deviation: of("deviation"), least: of("min"), greatest: of("max")}, "green");
   }
 }
 

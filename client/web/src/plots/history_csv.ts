@@ -1,23 +1,30 @@
 // history_csv: the statistics of runs as CSV, with the columns of `evod export --what generations`. Pure functions.
 import {csv_line, csv_records, CsvError} from "../core/csv";
 import type {CsvRecord} from "../core/csv";
-import type {Message} from "../core/messages";
+import type {GenerationStatistics} from "../core/protocol";
 import {history_csv_texts as texts} from "../texts/history_csv";
+import type {AccountPart, GenePart, NumberColumn} from "./history_table";
 
-const number_columns = [
+const number_columns: readonly NumberColumn[] = [
   "generation",   "island",       "end_tick",       "simulated_s",       "organism_count",
   "fitness_best", "fitness_mean", "fitness_median", "fitness_worst",     "fitness_deviation",
   "diversity",    "alive_count",  "starved_count",  "poisoned_count",    "food_eaten",
   "poison_eaten", "clamp_count",  "too_fast_count", "speed_limit_count", "best_organism"
 ];
-const gene_parts = ["mean", "deviation", "min", "max"];
-const account_parts = ["selection", "transmission", "migration", "change"];
+const gene_parts: readonly GenePart[] = ["mean", "deviation", "min", "max"];
+const account_parts: readonly AccountPart[] = ["selection", "transmission", "migration", "change"];
 const island_max = 65535;
+
+/** Statistics that a file contains. */
+export type Statistics = GenerationStatistics&{
+  generation: number;
+  island: number
+};
 
 /** The statistics of one run in a file. */
 export interface CsvRun {
   name: string; // the columns that distinguish the runs of the file: "cell 0, replicate 1"; empty: the only run
-  history: Message[]; // ordered by generation
+  history: Statistics[]; // ordered by generation
 }
 export interface HistoryCsv {
   runs: CsvRun[]; // at least one
@@ -25,12 +32,12 @@ export interface HistoryCsv {
 }
 
 /** Returns the table of GenerationStatistics messages, with a heading. */
-export function history_csv(history: readonly Message[], gene_names: readonly string[]): string {
+export function history_csv(history: readonly GenerationStatistics[], gene_names: readonly string[]): string {
   const of_genes = (parts: readonly string[]): string[] =>
     gene_names.flatMap((gene) => parts.map((part) => `${gene}_${part}`));
   const lines = [csv_line([...number_columns, ...of_genes(gene_parts), ...of_genes(account_parts)])];
   for (const one of history) {
-    const genes = gene_names.map((_, i) => one.genes?.[i] as Message | undefined);
+    const genes = gene_names.map((_, i) => one.genes?.[i]);
     lines.push(csv_line([
       ...number_columns.map((name) => one[name] ?? 0),
       ...genes.flatMap((gene) => gene_parts.map((part) => gene?.[part] ?? 0)),
@@ -40,8 +47,8 @@ export function history_csv(history: readonly Message[], gene_names: readonly st
   return `${lines.join("\n")}\n`;
 }
 
-/** Reads a table in any order of columns. Other columns, such as cell and replicate of `evod sweep`,
- *  distinguish the runs of the table. Returns the runs; or a sentence that names the wrong line, without a full stop. */
+/** Reads a table in any order of columns. Other columns, such as cell and replicate of `evod sweep`, distinguish the
+ *  runs of the table. Returns the runs; or a sentence that names the wrong line, without a full stop. */
 export function read_history_csv(text: string): HistoryCsv|string {
   const records = csv_records(text);
   if (records instanceof CsvError) {
@@ -80,7 +87,7 @@ export function read_history_csv(text: string): HistoryCsv|string {
 /** The rows with the same cells in all columns that are not statistics. */
 interface Group {
   cells: readonly string[]; // of its first row
-  history: Message[];
+  history: Statistics[];
   places: Set<string>; // generations and islands
 }
 
@@ -114,7 +121,7 @@ function columns_of({line, cells}: CsvRecord): Columns|string {
 }
 
 /** Returns GenerationStatistics; or a sentence that says what is wrong. */
-function row_of({line, cells}: CsvRecord, {at, count, gene_names, required, accounts}: Columns): Message|string {
+function row_of({line, cells}: CsvRecord, {at, count, gene_names, required, accounts}: Columns): Statistics|string {
   if (cells.length !== count) {
     return texts.cell_count(line, cells.length, count);
   }
@@ -138,6 +145,8 @@ function row_of({line, cells}: CsvRecord, {at, count, gene_names, required, acco
     Object.fromEntries(parts.map((part) => [part, number(`${gene}_${part}`)]));
   const has_account = (gene: string): boolean => account_parts.every((part) => is_number(cell(`${gene}_${part}`)));
   return {
+    generation: number("generation"),
+    island: number("island"),
     ...Object.fromEntries(number_columns.map((name) => [name, number(name)])),
     genes: gene_names.map(
       (gene) =>

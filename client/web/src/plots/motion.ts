@@ -1,6 +1,6 @@
 // motion: how the bodies of an island moved, as the answers to GetMotion; their plots; and whether the tick is short
 // enough for them. No DOM.
-import type {Message} from "../core/messages";
+import type {Motion} from "../core/protocol";
 import {physics_texts as texts} from "../texts/physics";
 import type {PlotContent, SeriesColour} from "./plot_content";
 
@@ -13,9 +13,9 @@ const advised_movement = 0.5;
 
 /** The answers about one island, oldest first. */
 export class MotionHistory {
-  #motions: Message[] = [];
+  #motions: Motion[] = [];
 
-  get motions(): readonly Message[] {
+  get motions(): readonly Motion[] {
     return this.#motions;
   }
 
@@ -25,7 +25,7 @@ export class MotionHistory {
 
   /** Adds an answer. It replaces the last one if that has the same tick. If the world has gone back, as a replay can,
    *  the history begins again. */
-  add(motion: Message): void {
+  add(motion: Motion): void {
     const last = this.#motions[this.#motions.length - 1];
     if (last !== undefined && tick_of(motion) < tick_of(last)) {
       this.#motions = [];
@@ -36,8 +36,8 @@ export class MotionHistory {
   }
 }
 
-function tick_of(motion: Message): number {
-  return Number(motion.tick ?? 0);
+function tick_of(motion: Motion): number {
+  return motion.tick ?? 0;
 }
 
 /** A quantity that the panel plots. */
@@ -45,7 +45,7 @@ export interface Measure {
   name: string;
   unit: string;
   colour: SeriesColour;
-  of: (motion: Message) => number;
+  of: (motion: Motion) => number;
   is_count?: boolean;
 }
 
@@ -65,7 +65,7 @@ export const measures: readonly Measure[] = [
 
 /** Builds the plot of a measure over the ticks. */
 export function motion_figure(
-  {name, unit, colour, of, is_count = false}: Measure, motions: readonly Message[]): PlotContent {
+  {name, unit, colour, of, is_count = false}: Measure, motions: readonly Motion[]): PlotContent {
   const last = motions[motions.length - 1];
   const title = last === undefined ? name : texts.now(name, of(last), unit);
   const series = last === undefined ? [] : [{
@@ -86,12 +86,12 @@ export interface TickVerdict {
 }
 
 /** Judges whether a tick is short enough for the present speeds. */
-export function judge_tick(motion: Message): TickVerdict {
-  const too_fast: number = motion.too_fast_count ?? 0, bodies: number = motion.body_count ?? 0;
+export function judge_tick(motion: Motion): TickVerdict {
+  const too_fast = motion.too_fast_count ?? 0, bodies = motion.body_count ?? 0;
   if (too_fast === 0) {
     return {level: "good", sentence: texts.short_enough(motion.fastest_step_share ?? 0)};
   }
-  const per_tick = too_fast / Math.max(Number(motion.generation_tick ?? 0), 1);
+  const per_tick = too_fast / Math.max(motion.generation_tick ?? 0, 1);
   const finding = texts.finding(per_tick, bodies), share = per_tick / Math.max(bodies, 1);
   if (share < nearly_too_long_share) {
     return {level: "good", sentence: texts.short_enough_for_most(finding)};
@@ -101,8 +101,8 @@ export function judge_tick(motion: Message): TickVerdict {
 }
 
 /** Recommends values with which the fastest body moves advised_movement of its radius in a tick. */
-function advice(motion: Message): string {
-  const movement: number = motion.fastest_step_share ?? 0, tick_s: number = motion.tick_s ?? 0;
+function advice(motion: Motion): string {
+  const movement = motion.fastest_step_share ?? 0, tick_s = motion.tick_s ?? 0;
   if (movement <= advised_movement) { // only an earlier speed was too high
     return texts.advise_half(tick_s / 2);
   }
