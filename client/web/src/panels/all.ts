@@ -22,5 +22,6 @@ export const panels: ((context: PanelContext) => Panel)[] = [
   (context) => new EventsPanel(context),
   (context) =>
     new LazyPanel("freezer", "Freezer", async () => new (await import("./loaded_later")).FreezerPanel(context)),
+  (context) =>
     new LazyPanel("physics", "Physics", async () => new (await import("./loaded_later")).PhysicsPanel(context)),
 ];
