@@ -149,7 +149,8 @@ class Commands(WithServer):
         self.assertEqual(reported.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
                                         "tournament_size=4"])
         wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=2)
-        self.assertEqual(wrong, "evoctl: mutation_chance: got 2, allowed 0 to 1\nevoctl: restitution: got -1, allowed 0 to 1\n")
+        self.assertEqual(wrong, "evoctl: invalid parameter values\n  mutation_chance: got 2, allowed 0 to 1\n"
+                                "  restitution: got -1, allowed 0 to 1\n")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
         self.evoctl("set", "--dry-run", "survivors=0.25")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
@@ -183,7 +184,7 @@ class Commands(WithServer):
             path.write_text('{"survivors": 3}')
             self.assertEqual(self.evoctl("create", "x", "--experiment", str(path), status=2),
                              "evoctl: --experiment: survivors (line 1): got 3, allowed 0 to 1\n")
-        self.assertEqual(self.evoctl("organism", "5000", status=1), "evoctl: ID: got 5000, allowed 0 to 49 (no such organism)\n")
+        self.assertEqual(self.evoctl("organism", "5000", status=1), "evoctl: no such organism\n  ID: got 5000, allowed 0 to 49\n")
 
     def test_run_wait_says_how_long_it_takes(self):
         def said(*words):

@@ -314,7 +314,7 @@ export class App implements PanelContext {
     const reload = { label: "Reload", act: () => location.reload() };
     return [
       ...(phase === "lost" || phase === "connecting" ? [{ name: "lost", kind: "bad" as const, text: server.going_away ? "The server has shut down. Trying again …" : `${message || "Connecting"}. Trying again …` }] : []),
-      ...(phase === "open" && server.going_away ? [{ name: "going", kind: "warn" as const, text: "The server is shutting down." }] : []),
+      ...(phase === "open" && server.going_away ? [{ name: "going", kind: "warn" as const, text: event_text({ server_going_away: {} })[0] + "." }] : []),
       ...(server.updated ? [{ name: "updated", kind: "warn" as const, text: "The server was updated: reload the page.", actions: [reload] }] : []),
       ...this.#other_token(),
       ...this.#link.banners(),
