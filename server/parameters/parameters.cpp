@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -21,27 +22,41 @@ using base::Effect;
 using base::Overloaded;
 using text::number_text;
 
+// The parameters that users change most often.
+constexpr std::string_view most_used[] = {
+    "food_count", "poison_count", "population_size", "selection", "tournament_size", "mutation_chance", "mutation_step",
+};
+
 // clang-format off
+#define EVOD_TOPIC_LINE(title) topic = title;
 #define EVOD_REAL_LINE(name, value, least, greatest, unit, effect, help)                                               \
-    {#name, unit, help, Effect::effect, RealParameter{{least, greatest},                                               \
-        [](const Parameters& p) { return p.name; }, [](Parameters& p, double v) { p.name = v; }}},
+    add(#name, unit, help, Effect::effect, RealParameter{{least, greatest},                                            \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, double v) { p.name = v; }});
 #define EVOD_COUNT_LINE(name, value, least, greatest, unit, effect, help)                                              \
-    {#name, unit, help, Effect::effect, CountParameter{{least, greatest},                                              \
-        [](const Parameters& p) { return p.name; }, [](Parameters& p, std::uint32_t v) { p.name = v; }}},
+    add(#name, unit, help, Effect::effect, CountParameter{{least, greatest},                                           \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, std::uint32_t v) { p.name = v; }});
 #define EVOD_FLAG_LINE(name, value, effect, help)                                                                      \
-    {#name, "", help, Effect::effect, FlagParameter{                                                                   \
-        [](const Parameters& p) { return p.name; }, [](Parameters& p, bool v) { p.name = v; }}},
+    add(#name, "", help, Effect::effect, FlagParameter{                                                                \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, bool v) { p.name = v; }});
 #define EVOD_CHOICE_LINE(name, Type, value, effect, help)                                                              \
-    {#name, "", help, Effect::effect, ChoiceParameter{base::ChoiceNames<Type>::names,                                  \
+    add(#name, "", help, Effect::effect, ChoiceParameter{base::ChoiceNames<Type>::names,                               \
         [](const Parameters& p) { return static_cast<std::size_t>(p.name); },                                          \
-        [](Parameters& p, std::size_t v) { p.name = static_cast<Type>(v); }}},
+        [](Parameters& p, std::size_t v) { p.name = static_cast<Type>(v); }});
 // clang-format on
 
 std::vector<ParameterDescription> make_registry() {
     using namespace evolution; // for the enumeration names in EVOD_EVOLUTION_PARAMETERS
     using base::count_max;
-    return {EVOD_MODEL_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
-                EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)};
+    std::vector<ParameterDescription> registry;
+    std::string_view topic;
+    const auto add = [&](std::string_view name, std::string_view unit, std::string_view help, Effect effect,
+                         decltype(ParameterDescription::kind) kind) {
+        const bool is_most_used = std::ranges::find(most_used, name) != std::end(most_used);
+        registry.push_back({name, unit, help, topic, is_most_used, effect, std::move(kind)});
+    };
+    EVOD_MODEL_PARAMETERS(EVOD_TOPIC_LINE, EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
+    EVOD_EVOLUTION_PARAMETERS(EVOD_TOPIC_LINE, EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
+    return registry;
 }
 
 /// Sets one parameter, or returns what is wrong with the value.

@@ -239,7 +239,10 @@ class Roles(Access):
         self.assertEqual((by.kind, by.user, by.client), (w.ACTOR_KIND_CLIENT, "karl", "plain"))
         self.assertRegex(by.address, r"^127\.0\.0\.1:\d+$")
         of_karl = w.Actor(kind=w.ACTOR_KIND_CLIENT, user="karl")
-        self.assertEqual(viewer.next_event("parameters_changed").parameters_changed.by, of_karl)
+        self.assertEqual(event.text, f"karl: plain {by.address} set mutation_chance to 0.3, revision 2")
+        event = viewer.next_event("parameters_changed")
+        self.assertEqual(event.parameters_changed.by, of_karl)
+        self.assertEqual(event.text, "karl set mutation_chance to 0.3, revision 2")
         change = plain.set_parameters(mutation_chance=0.4)
         change.at_generation = 9
         controller.call(set_parameters=change)

@@ -149,7 +149,8 @@ class Commands(WithServer):
         self.assertEqual(reported.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
                                         "tournament_size=4"])
         wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=2)
-        self.assertEqual(wrong, "evoctl: mutation_chance: got 2, allowed 0 to 1\nevoctl: restitution: got -1, allowed 0 to 1\n")
+        self.assertEqual(wrong, "evoctl: invalid parameter values\n  mutation_chance: got 2, allowed 0 to 1\n"
+                                "  restitution: got -1, allowed 0 to 1\n")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
         self.evoctl("set", "--dry-run", "survivors=0.25")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
@@ -174,7 +175,7 @@ class Commands(WithServer):
                 (["speed", "0"], "SPEED: got 0, allowed 0.001 to 10000"),
                 (["speed", "fast"], "SPEED: got fast, allowed max, or 0.001 to 10000, such as 2 for twice real time"),
                 (["create", "no/slash"], 'NAME: got "no/slash", allowed 1 to 64 of a-z A-Z 0-9 _ -'),
-                (["set", "--at-generation", "0", "survivors=1"], "--at-generation: got 0, allowed at least 2"),
+                (["set", "--at-generation", "0", "survivors=1"], "invalid planned change\n  --at-generation: got 0, allowed at least 2"),
                 (["set", "mutation_chanse=1"], "mutation_chanse: unknown parameter; did you mean mutation_chance?"),
                 (["status", "--iland"], "--iland: unknown option\nSee evoctl status --help")):
             self.assertEqual(self.evoctl(*words, status=2), f"evoctl: {error}\n")
@@ -183,7 +184,7 @@ class Commands(WithServer):
             path.write_text('{"survivors": 3}')
             self.assertEqual(self.evoctl("create", "x", "--experiment", str(path), status=2),
                              "evoctl: --experiment: survivors (line 1): got 3, allowed 0 to 1\n")
-        self.assertEqual(self.evoctl("organism", "5000", status=1), "evoctl: ID: got 5000, allowed 0 to 49 (no such organism)\n")
+        self.assertEqual(self.evoctl("organism", "5000", status=1), "evoctl: no such organism\n  ID: got 5000, allowed 0 to 49\n")
 
     def test_run_wait_says_how_long_it_takes(self):
         def said(*words):
@@ -220,7 +221,7 @@ class Commands(WithServer):
     def test_colours_are_for_terminals_only(self):
         self.evoctl("run")
         self.assertIn("\x1b[32mrunning\x1b[0m", self.on_terminal("status", NO_COLOR=""))
-        self.assertIn("\x1b[31mevoctl:\x1b[0m --world: got nowhere", self.on_terminal("--world", "nowhere", "pause", NO_COLOR=""))
+        self.assertIn("\x1b[31mevoctl:\x1b[0m no world has that name\r\n  --world: got nowhere", self.on_terminal("--world", "nowhere", "pause", NO_COLOR=""))
         for words in (["status"], ["--world", "nowhere", "pause"]):
             self.assertNotIn("\x1b", self.on_terminal(*words, NO_COLOR="1"))
             done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True, text=True)

@@ -281,6 +281,53 @@ def unbuilt_tests(names, text_of):
             yield pathlib.Path(name), 1, "no CMakeLists.txt builds this test: add it to the sources of a test program"
 
 
+SENTENCE_WORDS_MIN = 4
+# Folders to which the rule does not apply. core: the protocol is implemented once per language, and the tests compare the verdicts of
+# all decoders; history_csv is such a reader, too. viewer: panels that the page has, too, until evoview is the minimal viewer; then
+# remove this entry.
+VOICES_APART = ("client/web/src/core/", "client/core/history_csv", "client/viewer/")
+# Labels of states, axes, fields and empty plots: names of things rather than sentences.
+LABELS = {"waits for the disk", "gene units per generation", "generation of the parents", "no generation has ended yet"}
+SENTENCE_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|\#[^\n]*|(?P<quote>\"{3}|["'`])(?P<text>(?:\\.|(?!(?P=quote)).)*?)(?P=quote)""", re.S | re.X)
+
+
+def sentences_of(path, text):
+    """The sentences in the text literals of a source, as words in lower case → line. Literals in a row are one."""
+    if path.suffix == ".py":
+        text = re.sub(r'(?m)^\s*"{3}.*?"{3}', lambda found: "\n" * found.group().count("\n"), text, flags=re.S)  # docstrings
+        text = re.sub(r"(?m)^\s*#.*$", "", text)
+    sentences, literal, start, end = {}, "", 0, -1
+    for found in [*SENTENCE_TEXT.finditer(text), None]:
+        if found is not None and found["text"] is None:
+            continue
+        if found is None or text[end:found.start()].strip(" \t\n\\+fr"):
+            for part in re.split(r"\$?\{[^{}]*\}|%[-.\d]*[a-z]+|[:;,.!?()–…]+\s", literal + " "):
+                words = re.findall(r"[a-z_]+", part.lower())
+                if len(words) >= SENTENCE_WORDS_MIN:
+                    sentences.setdefault(" ".join(words), line_of(text, start))
+            literal = ""
+        if found is not None:
+            start = found.start() if not literal else start
+            literal += found["text"].replace("\\n", " ")
+            end = found.end()
+    return sentences
+
+
+def second_voices(names, text_of):
+    """Sentences that the browser page has in common with a program in C++ or Python: one of both has to send it, or both
+    read it from a file. Arguments as in untested_sources()."""
+    others = {}
+    for name in names:
+        if re.match(r"(server|client|proto)/.*\.(cpp|h|py)$", name) and not name.startswith(VOICES_APART):
+            for sentence, line in sentences_of(pathlib.Path(name), text_of(name)).items():
+                others.setdefault(sentence, f"{name}:{line}")
+    for name in names:
+        if re.match(r"client/web/src/.*\.ts$", name) and not name.startswith(VOICES_APART):
+            for sentence, line in sentences_of(pathlib.Path(name), text_of(name)).items():
+                if sentence in others.keys() - LABELS:
+                    yield pathlib.Path(name), line, f"'{sentence}' stands in {others[sentence]}, too: let one of both say it"
+
+
 def findings(root):
     """(path, line, what is wrong) of every rule and every tracked file below `root`."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True).stdout.decode()
@@ -299,6 +346,7 @@ def findings(root):
             yield from rule(path, text)
     yield from untested_sources(names, lambda name: (root / name).read_text())
     yield from unbuilt_tests(names, lambda name: (root / name).read_text())
+    yield from second_voices(names, lambda name: (root / name).read_text())
 
 
 if __name__ == "__main__":

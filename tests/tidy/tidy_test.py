@@ -37,6 +37,18 @@ class Rules(unittest.TestCase):
                           "#if a\nb();\n#else\nc();\n#endif", "// if (a) b();", "auto text = \"if (a) b();\";"):
             self.assertEqual(found(tidy.missing_braces, "a.cpp", statement), [], statement)
 
+    def test_a_sentence_in_two_languages_is_found(self):
+        page = "client/web/src/a.ts"
+        def voices(source, text, of_page):
+            files = {source: text, page: of_page}
+            return [line for _, line, _ in tidy.second_voices(files, files.get)]
+        cpp = 'f("the world " + name + " has been deleted "\n  "by the administrator: create it");'
+        self.assertEqual(voices("server/a.cpp", cpp, "\nlet a = `${x} has been deleted by the administrator.`;"), [2])
+        self.assertEqual(voices("client/python/evod/a.py", 'f"{x} has been deleted by Anna"', 'a("has been deleted by Anna");'), [1])
+        self.assertEqual(voices("server/a.cpp", "// has been deleted by the administrator\n", 'a("has been deleted by the administrator");'), [])
+        self.assertEqual(voices("server/a.cpp", 'f("has been deleted");', 'a("has been deleted");'), [], "three words")
+        self.assertEqual(voices("tests/a.cpp", cpp, 'a("has been deleted by the administrator");'), [], "a test")
+
     def test_torn_comment_blocks_are_found(self):
         self.assertEqual(found(tidy.torn_comments, "a.h", "// stream. Source       Blickle 1996\n"), [1])
         self.assertEqual(found(tidy.torn_comments, "a.h", "// Source       Blickle 1996\n// The Owner of it.\n"), [])

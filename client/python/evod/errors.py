@@ -62,6 +62,8 @@ class Error(Exception):
     message: str
     #: All arguments whose values are not allowed.
     violations: tuple[Violation, ...]
+    #: Values in the message, for programs, by the names that ``evod.v1.Argument`` lists: {"suggestion": "lesson"}.
+    arguments: dict[str, str]
 
     _code: ClassVar[int | None] = None  # the code of a subclass
 
@@ -69,6 +71,7 @@ class Error(Exception):
         # Messages contain texts of servers, programs and files. A traceback prints them to a terminal.
         self.message = "\n".join(map(printable, message.split("\n")))
         self.violations = tuple(Violation(*map(printable, violation)) for violation in violations)
+        self.arguments = {}
         self.code = self._code if code is None else code
         super().__init__(self.message)
 
@@ -83,10 +86,12 @@ class Error(Exception):
             return f"code {self.code}"
 
     def __str__(self) -> str:
+        if len(self.violations) == 1 and self.message.startswith(self.violations[0].field + ": "):
+            return self.message  # it says what is allowed
         return self.message + "".join(f"\n  {v.field}: got {v.got}, allowed {v.allowed}" for v in self.violations)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _restored, (type(self), self.message, self.violations, self.code, self.reason)
+        return _restored, (type(self), self.message, self.violations, self.code, self.reason, self.arguments)
 
 
 class InvalidArgument(Error, ValueError):
@@ -226,12 +231,14 @@ def printable(text: str) -> str:
 def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
     violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
-    message = _with_arguments(printable(status.message))
+    # The lines after the sentence are those that str() makes of the violations.
+    message = _with_arguments(printable(status.message.partition("\n")[0]))
     kind: type[Error] = _OF_CODE.get(status.code, Error)
     if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD:
         kind = AnswerExpired
     error = kind(message, violations, status.code)
     error.reason = status.reason
+    error.arguments = {printable(argument.name): printable(argument.value) for argument in status.arguments}
     return error
 
 
@@ -247,12 +254,14 @@ def copy_of(error: E) -> E:
     Every caller raises its own copy. The traceback of the original refers to the stack frames of the connection task. A
     caller that clears the frames of a traceback, as unittest does, would end this task.
     """
-    return _restored(type(error), error.message, error.violations, error.code, error.reason)
+    return _restored(type(error), error.message, error.violations, error.code, error.reason, error.arguments)
 
 
-def _restored(kind: type[E], message: str, violations: Iterable[Violation], code: int | None, reason: int) -> E:
+def _restored(kind: type[E], message: str, violations: Iterable[Violation], code: int | None, reason: int,
+              arguments: dict[str, str]) -> E:
     error = kind(message, violations, code)
     error.reason = reason
+    error.arguments = dict(arguments)
     return error
 
 

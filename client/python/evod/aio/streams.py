@@ -148,6 +148,8 @@ class Snapshots(_Stream):
 class Events(_Stream):
     """A subscription to events, returned by `World.events` and `Lab.events`. Iterating it yields the events.
 
+    `event.text` is the event in one English sentence; it is empty in an `events_dropped` that this package itself creates.
+
     After a reconnect the first event is an `events_dropped` with the count 0, because the number of missed events is unknown.
     """
 
