@@ -1,5 +1,5 @@
-"""Builds the package. Generates the message classes of evod.v1 (with protoc), evod/results.py, evod/lab.py,
-evod/experiments.py and evod/version.py.
+"""Builds the package. Generates the message classes of evod.v1 (with protoc), evod/results.py, evod/version.py, and
+the synchronous modules of evod/aio.
 
 The environment variable PROTOC contains the path of protoc; by default protoc is searched in PATH.
 """
@@ -18,7 +18,8 @@ here = pathlib.Path(__file__).resolve().parent
 sources = here.parent.parent
 
 
-SYNCHRONOUS = ("experiments.py", "lab.py")  # modules of evod.aio from which synchronous modules are generated
+# Modules of evod.aio from which synchronous modules are generated.
+SYNCHRONOUS = ("connection.py", "experiments.py", "lab.py", "streams.py", "world_queries.py")
 
 
 class BuildWithGenerated(build_py):

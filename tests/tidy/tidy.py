@@ -46,7 +46,7 @@ BANNED_NAMES = {
     "Readout": "StatusText",
 }
 CODE = (".cpp", ".h", ".c", ".proto", ".py")
-TEXT = (*CODE, ".ts", ".mjs", ".css", ".html", ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
+TEXT = (*CODE, ".ts", ".glsl", ".mjs", ".css", ".html", ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
 # The changelog names what was renamed, and this test names what is banned. The rest is not ours to write, or not text.
 WITHOUT_WORDS = re.compile(r"CHANGELOG\.md|LICENSE|tests/tidy/|tests/fuzz/corpus/|proto/vectors/|\.gitignore")
 

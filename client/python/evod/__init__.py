@@ -14,8 +14,10 @@ server. `evod.aio` has the same classes for asyncio. `evod.v1` contains the mess
 `evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call. `evod.run_table()` is made for tasks
 of an executor.
 
-evod.results, evod.lab, evod.experiments and evod.version are generated when the package is built (setup.py).
+evod.results, evod.version, and a synchronous module for every module of evod.aio that has one, such as evod.lab, are generated
+when the package is built (setup.py).
 """
+from evod.connection import LocalLab, connect, local
 from evod.errors import (
     Aborted,
     AlreadyExists,
@@ -40,7 +42,7 @@ from evod.errors import (
 from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, run_table, sweep
 from evod.generations import Generation, History, Life, Population
 from evod.genes import GENE_NAMES, ByGene, Genes
-from evod.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
+from evod.lab import Lab, Replay, World
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
 from evod.results import (
     AwaitedFitness,
@@ -76,6 +78,7 @@ from evod.results import (
 )
 from evod.run_file import RunFile, open_run
 from evod.snapshots import Box, Boxes, Item, Items, Organism, Organisms, Snapshot, Tile
+from evod.streams import Events, Run, Snapshots
 from evod.version import __version__
 
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING

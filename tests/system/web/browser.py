@@ -184,9 +184,7 @@ class Browser:
 
     def set_camera(self, x_px, y_px, zoom):
         """Shows the island at this scale, which a user can only come near with the wheel."""
-        self.run("""const pane = evod.app.area().pane;
-            pane.camera = { x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] };
-            evod.server.post({ kind: "camera", pane: 0, camera: pane.camera });""", x_px, y_px, zoom)
+        self.run("evod.app.area().pane.view.set({ x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] })", x_px, y_px, zoom)
 
     def canvas(self):
         """The place of the canvas: its left, top, width and height in CSS pixels."""
@@ -199,6 +197,11 @@ class Browser:
         shot = self.cdp("Page.captureScreenshot", format="png", optimizeForSpeed=True,
                         clip=dict(x=left, y=top, width=width, height=height, scale=1))
         return png.decode(base64.b64decode(shot["data"]))
+
+    def click_at(self, x, y):
+        """Clicks on a point of the page with the mouse."""
+        for kind in ("mousePressed", "mouseReleased"):
+            self.cdp("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
     def tap(self, x, y):
         """Touches a point of the page for a moment."""

@@ -13,7 +13,7 @@ import shutil
 import tempfile
 from typing import Any, Mapping, Sequence, Union
 
-from evod.aio.lab import local
+from evod.aio.connection import local
 from evod.aio.link import blocking_call
 from evod.errors import InvalidArgument, wrong_argument
 from evod.executor_sweep import ExecutorSweep, Plan, plan_command
