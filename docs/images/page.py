@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Makes page.png and page_tablet.png, the images of the page in a browser: docs/images/page.py. Build the preset release first.
+"""Makes page.png and page_tablet.png, the images of the page in a browser: docs/images/page.py. Build the preset
+release first.
 
 They show a world of seed 7. The packages python3-selenium, python3-pil and
 chromium-driver are needed.
@@ -25,7 +26,8 @@ BYTES_MAX = 200_000
 
 
 def evoctl(*arguments, check=True):
-    return subprocess.run([BIN / "evoctl", "--server", f"127.0.0.1:{PORT}", *arguments], check=check, stdout=subprocess.DEVNULL,
+    return subprocess.run([BIN / "evoctl", "--server", f"127.0.0.1:{PORT}", *arguments], check=check,
+                          stdout=subprocess.DEVNULL,
                           stderr=None if check else subprocess.DEVNULL).returncode == 0
 
 
@@ -52,8 +54,10 @@ def show(page, tick, panel, shown):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        server = subprocess.Popen([BIN / "evod", "--port", str(PORT), "--web", "--http-port", str(HTTP_PORT), "--seed", "7",
-                                   "--speed", "max", "--data", folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        server = subprocess.Popen([BIN / "evod", "--port", str(PORT), "--web", "--http-port", str(HTTP_PORT), "--seed",
+                                   "7",
+                                   "--speed", "max", "--data", folder], stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL)
         try:
             waiting.until(lambda: evoctl("status", check=False), "the server")
             evoctl("run", "14", "--wait")

@@ -1,7 +1,7 @@
 """An independent client against a real server: everything that docs/PROTOCOL.md promises, abuse included.
 
-Plain Python 3, protobuf and numpy, with message classes made by protoc, and the decoder of docs/PROTOCOL.md; nothing else
-of this repository. Each class below is one subject, and one test of ctest:
+Plain Python 3, protobuf and numpy, with message classes made by protoc, and the decoder of docs/PROTOCOL.md; nothing
+else of this repository. Each class below is one subject, and one test of ctest:
 
     plain_client.py EVOD MESSAGES PROTOCOL.md [CLASS …]
 
@@ -36,7 +36,8 @@ from delta_decoder import KINDS, Decoder, TilesDecoder  # noqa: E402
 import waiting  # noqa: E402
 from waiting import until  # noqa: E402
 
-OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, ABORTED, UNIMPLEMENTED, UNAVAILABLE = 0, 3, 5, 6, 8, 9, 10, 12, 14
+OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED = 0, 3, 5, 6, 8
+PRECONDITION, ABORTED, UNIMPLEMENTED, UNAVAILABLE = 9, 10, 12, 14
 
 
 class Server:
@@ -228,12 +229,14 @@ def as_dict(parameter_set):
 
 
 def columns(snapshot):
-    """The entities of a snapshot of CODEC_PLAIN as numpy arrays: {"organisms": {"id": …, "x": …, …}, "food": …, …}, px."""
+    """The entities of a snapshot of CODEC_PLAIN as numpy arrays: {"organisms": {"id": …, "x": …, …}, "food": …, …},
+    px."""
     result = {}
     for kind, sizes in KINDS:
         of_kind = getattr(snapshot.plain, kind)
         fields = {field.name: numpy.array(getattr(of_kind, field.name), numpy.uint32 if field.name == "id" else float)
-                  for field in of_kind.DESCRIPTOR.fields if field.name != "heading"}  # no subscription asks for headings
+                  # no subscription asks for headings
+                  for field in of_kind.DESCRIPTOR.fields if field.name != "heading"}
         assert {len(column) for column in fields.values()} == {getattr(snapshot, COUNTS[kind])}
         result[kind] = {name.removesuffix("_px"): column for name, column in fields.items()}
     return result
@@ -437,7 +440,8 @@ class Handshake(WithServer):
         patient.call(list_worlds=c.ListWorlds())  # an idle session may stay
 
     def test_a_dense_sequence_of_frames_is_not_late(self):
-        body = session_pb2.ClientMessage(request=c.Request(request_id=1, list_worlds=c.ListWorlds())).SerializeToString()
+        body = session_pb2.ClientMessage(request=c.Request(request_id=1,
+                                                           list_worlds=c.ListWorlds())).SerializeToString()
         frame = b"EV\x01\x01" + struct.pack("<I", len(body)) + body
         limit_s = self.client.welcome.limits.frame_timeout_s
 
@@ -612,7 +616,8 @@ class Requests(WithServer):
                 continue
             extra = {"set_speed": {"speed": w.Speed(max=True)}, "subscribe_snapshots": {"rate_hz": 1},
                      "place": {"items": [c.PlacedItem(kind=c.ITEM_KIND_FOOD, x_px=640, y_px=360)]},
-                     "remove": {"food": [0]}, "set_fitness": {"fitness": [0]}, "fork_world": {"name": "new"}, "seek": {"to": c.RunMoment(tick=1)},
+                     "remove": {"food": [0]}, "set_fitness": {"fitness": [0]}, "fork_world": {"name": "new"},
+                     "seek": {"to": c.RunMoment(tick=1)},
                      "export_run": {"table": c.RUN_TABLE_EVENTS, "format": c.TEXT_FORMAT_CSV}}
             for world in ("nowhere", "no\nwhere", "ü" * 1000):
                 request = {field.name: kind(world=world, **extra.get(field.name, {}))}
@@ -945,7 +950,8 @@ class Parameters(WithServer):
                      w.PARAMETER_KIND_COUNT: [1.0, False, "many"] + ([int(p.max) + 1] if p.max < 0xffffffff else [])
                                              + ([int(p.min) - 1] if p.min > 0 else []),
                      w.PARAMETER_KIND_FLAG: [1, 1.0, "true"],
-                     w.PARAMETER_KIND_CHOICE: [0, "", "nothing", p.choices[0].upper() if p.choices else "", True]}[p.kind]
+                     w.PARAMETER_KIND_CHOICE: [0, "", "nothing", p.choices[0].upper() if p.choices else "",
+                                               True]}[p.kind]
             for x in wrong:
                 self.assertEqual(self.refused(**{p.name: x}), {"set_parameters." + p.name}, x)
 
@@ -956,12 +962,14 @@ class Parameters(WithServer):
 
     def test_a_missing_value_and_a_repeated_name_are_faults(self):
         bad = c.SetParameters(world=self.world, parameters=[
-            w.ParameterAssignment(name="mutation_step"), w.ParameterAssignment(name="elite_count", value=w.ParameterValue()),
+            w.ParameterAssignment(name="mutation_step"), w.ParameterAssignment(name="elite_count",
+                                                                               value=w.ParameterValue()),
             *assignments(mutation_chance=7.0)])
         status = self.client.call(INVALID, set_parameters=bad).status
         self.assertEqual({v.field for v in status.violations},
                          {"set_parameters." + n for n in ("mutation_step", "elite_count", "mutation_chance")})
-        twice = c.SetParameters(world=self.world, parameters=assignments(food_health=1.0) + assignments(food_health=2.0))
+        twice = c.SetParameters(world=self.world, parameters=assignments(food_health=1.0) +
+                                assignments(food_health=2.0))
         self.assertEqual(self.client.call(INVALID, set_parameters=twice).status.violations[0].got, "given twice")
 
     def test_values_that_do_not_go_together_are_refused(self):
@@ -989,7 +997,8 @@ class Parameters(WithServer):
         self.assertEqual(answer.parameters, self.get())
         self.assertEqual(self.client.call(reset_world=c.ResetWorld(world=self.world)).world.island_count, 2)
         after = as_dict(self.get())
-        self.assertEqual((after["population_size"].value.count, after["population_size"].HasField("pending")), (60, False))
+        self.assertEqual((after["population_size"].value.count, after["population_size"].HasField("pending")),
+                         (60, False))
 
     def test_a_dry_run_answers_and_changes_nothing(self):
         before = self.get()
@@ -1000,7 +1009,8 @@ class Parameters(WithServer):
 
     def test_compare_and_set(self):
         revision = self.get().revision
-        answer = self.client.call(set_parameters=set_parameters(self.world, expected_revision=revision, food_health=1.0))
+        answer = self.client.call(set_parameters=set_parameters(self.world, expected_revision=revision,
+                                                                food_health=1.0))
         self.assertGreater(answer.parameters.revision, revision)
         status = self.client.call(ABORTED, set_parameters=set_parameters(
             self.world, expected_revision=revision, food_health=2.0)).status
@@ -1120,7 +1130,8 @@ class Events(WithServer):
         world = self.new_world()
         self.subscribe(world)
         self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=5))
-        event = self.watcher.next_event("run_control_changed", lambda e: e.run_control_changed.by.kind == w.ACTOR_KIND_GOAL)
+        event = self.watcher.next_event("run_control_changed",
+                                        lambda e: e.run_control_changed.by.kind == w.ACTOR_KIND_GOAL)
         self.assertEqual((event.tick, event.run_control_changed.world.state), (5, w.RUN_STATE_PAUSED))
 
     def test_generations_migrations_and_the_end_of_a_run(self):
@@ -1195,7 +1206,8 @@ class Snapshots(WithServer):
         self.assertEqual((snapshot.state_hash.hex(), snapshot.run_id.hex()), (info.state_hash, info.run_id))
         self.assertEqual((snapshot.world, snapshot.island, snapshot.island_count), (world, 0, 1))
         self.assertEqual((snapshot.width_px, snapshot.height_px, snapshot.item_radius_px), (1280, 720, 4))
-        self.assertEqual((snapshot.codec, snapshot.subscription_id), (stream_pb2.CODEC_PLAIN, subscription.subscription_id))
+        self.assertEqual((snapshot.codec, snapshot.subscription_id),
+                         (stream_pb2.CODEC_PLAIN, subscription.subscription_id))
         live = self.client.call(get_statistics=c.GetStatistics(world=world)).statistics.live[0]
         self.assertEqual(snapshot.live, live)
         self.assertEqual(snapshot.organism_count, live.alive_count)
@@ -1231,7 +1243,8 @@ class Snapshots(WithServer):
         self.assertEqual(ticks, sorted(ticks))
         # At 30 Hz with a few extra snapshots: 40 ticks take 2/3 s, so about 20 are shown.
         self.assertLess(len(ticks), 30 * (time.monotonic() - began) + 8)
-        self.assertEqual((snapshot.state, snapshot.state_hash.hex()), (w.RUN_STATE_PAUSED, self.client.world(world).state_hash))
+        self.assertEqual((snapshot.state, snapshot.state_hash.hex()),
+                         (w.RUN_STATE_PAUSED, self.client.world(world).state_hash))
         self.viewer.call(list_worlds=c.ListWorlds())
         self.assertEqual(self.viewer.snapshots, [])  # the world is idle
 
@@ -1247,7 +1260,8 @@ class Snapshots(WithServer):
         world = self.new_world()
         self.subscribe(world, 0.001)
         self.viewer.next_snapshot()
-        for request in ({"run_until_tick": c.RunUntilTick(world=world, tick=3)}, {"reset_world": c.ResetWorld(world=world)},
+        for request in ({"run_until_tick": c.RunUntilTick(world=world, tick=3)},
+                        {"reset_world": c.ResetWorld(world=world)},
                         {"set_speed": c.SetSpeed(world=world, speed=w.Speed(max=True))}):
             answer = self.client.call(**request).world
             self.viewer.next_snapshot(lambda p: p.run_id.hex() == answer.run_id and p.speed == answer.speed)
@@ -1273,7 +1287,8 @@ class Snapshots(WithServer):
         world = self.new_world()
         self.assertEqual(self.subscribe(world, 1e6).rate_hz, self.viewer.welcome.limits.snapshot_rate_hz_max)
         for rate in (0.0, -1.0, math.nan, math.inf):
-            status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=rate)).status
+            status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(world=world,
+                                                                                        rate_hz=rate)).status
             self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots.rate_hz"])
 
     def test_no_more_subscriptions_than_the_limit(self):
@@ -1353,7 +1368,8 @@ class Deltas(WithServer):
             else:
                 decoder = self.decoders.setdefault((snapshot.subscription_id, snapshot.island), Decoder(zstd_content))
                 seen = {kind: {field: column if field in ("id", "dx", "dy") else column / 16
-                               for field, column in fields.items()} for kind, fields in decoder.decode(snapshot).items()}
+                               for field, column in fields.items()} for kind,
+                        fields in decoder.decode(snapshot).items()}
             if condition(snapshot):
                 return snapshot, seen
 
@@ -1433,7 +1449,8 @@ class Deltas(WithServer):
 
     def test_a_new_viewer_costs_the_others_nothing(self):
         world = self.new_world()
-        self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=0.01, codec=stream_pb2.CODEC_DELTA))
+        self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=0.01,
+                                                                  codec=stream_pb2.CODEC_DELTA))
         self.next()
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
         self.client.call(run=c.Run(world=world))
@@ -1572,14 +1589,16 @@ class Views(WithServer):
             self.next()
 
     def next(self, condition=lambda snapshot: True):
-        """The next snapshot that fulfils the condition, and the contents of its tiles. Earlier ones are decoded, too."""
+        """The next snapshot that fulfils the condition, and the contents of its tiles. Earlier ones are decoded,
+        too."""
         while True:
             snapshot = self.viewer.next_snapshot()
             seen = None
             if snapshot.codec == stream_pb2.CODEC_DELTA:
                 self.assertEqual(snapshot.base_sequence, 0)
                 self.assertEqual((snapshot.tile_px, snapshot.body), (512, b""))
-                decoder = self.decoders.setdefault((snapshot.subscription_id, snapshot.island), TilesDecoder(zstd_content))
+                decoder = self.decoders.setdefault((snapshot.subscription_id, snapshot.island),
+                                                   TilesDecoder(zstd_content))
                 seen = decoder.decode(snapshot)
             if condition(snapshot):
                 return snapshot, seen
@@ -1901,7 +1920,8 @@ class Queries(WithServer):
         columns = lambda data, kind, count: numpy.frombuffer(data, kind).reshape(count, -1)
         return types.SimpleNamespace(
             answer=answer, genes=columns(answer.genes, "<f4", 6), parents=columns(answer.parents, "<u4", 2),
-            founders=numpy.frombuffer(answer.founders, "<u4"), choices=numpy.frombuffer(answer.choices, "u1"), forces=columns(answer.forces, "<f4", 2),
+            founders=numpy.frombuffer(answer.founders, "<u4"), choices=numpy.frombuffer(answer.choices, "u1"),
+                                     forces=columns(answer.forces, "<f4", 2),
             targets=columns(answer.targets, "<f4", 2))
 
     def compare_with_organisms(self, world, island=0):
@@ -1919,7 +1939,8 @@ class Queries(WithServer):
             self.assertEqual(list(dict.fromkeys(parents)), list(one.parents))
             self.assertEqual(all_of_them.choices[i], one.choice)
             self.assertEqual(list(all_of_them.forces[:, i]), [one.force_x, one.force_y])
-            self.assertEqual(list(all_of_them.targets[:, i]), [numpy.float32(one.target_x_px), numpy.float32(one.target_y_px)])
+            self.assertEqual(list(all_of_them.targets[:, i]),
+                             [numpy.float32(one.target_x_px), numpy.float32(one.target_y_px)])
             self.assertEqual(one.choice == w.CHOICE_UNSPECIFIED, not one.alive)
             if one.choice == w.CHOICE_WANDER:
                 self.assertEqual((one.target_x_px, one.target_y_px), (one.x_px, one.y_px))
@@ -1932,7 +1953,8 @@ class Queries(WithServer):
         world = self.new_world(generation_s=6, island_count=2, poison_count=200)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
         at_first = self.compare_with_organisms(world, 1)
-        self.assertEqual((at_first.answer.generation, at_first.answer.generation_tick, at_first.answer.parents), (1, 0, b""))
+        self.assertEqual((at_first.answer.generation, at_first.answer.generation_tick, at_first.answer.parents),
+                         (1, 0, b""))
         self.client.run_to(300, world)
         later = self.compare_with_organisms(world, 1)
         self.assertEqual((later.genes == at_first.genes).all(), True)
@@ -1972,9 +1994,11 @@ class Queries(WithServer):
             pushed = [(i, o) for i, o in enumerate(organisms()) if o.alive and before[i].alive]
             self.assertGreater(len(pushed), 30)
             as_predicted = sum(
-                math.isclose(o.velocity_x_px_s, 0.999 * (before[i].velocity_x_px_s + answer.forces[0, i] / o.mass_kg / 60),
+                math.isclose(o.velocity_x_px_s, 0.999 * (before[i].velocity_x_px_s + answer.forces[0,
+                                                                                                   i] / o.mass_kg / 60),
                              rel_tol=1e-4, abs_tol=1e-4) and
-                math.isclose(o.velocity_y_px_s, 0.999 * (before[i].velocity_y_px_s + answer.forces[1, i] / o.mass_kg / 60),
+                math.isclose(o.velocity_y_px_s, 0.999 * (before[i].velocity_y_px_s + answer.forces[1,
+                                                                                                   i] / o.mass_kg / 60),
                              rel_tol=1e-4, abs_tol=1e-4) for i, o in pushed)
             self.assertGreaterEqual(as_predicted, 0.8 * len(pushed), "all but those that have bounced")
 
@@ -1999,7 +2023,8 @@ class Queries(WithServer):
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
         motion = lambda: self.client.call(get_motion=c.GetMotion(world=world)).motion
         at_rest = motion()
-        self.assertEqual((at_rest.tick, at_rest.body_count, at_rest.kinetic_energy, at_rest.fastest_px_s), (0, 50, 0, 0))
+        self.assertEqual((at_rest.tick, at_rest.body_count, at_rest.kinetic_energy, at_rest.fastest_px_s),
+                         (0, 50, 0, 0))
         self.client.run_to(200, world)
         answer = motion()
         alive = [o for o in (self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
@@ -2080,7 +2105,8 @@ class StartAndEnd(unittest.TestCase):
         self.assertIn("folder", self.start_refused("--port", "0", "--experiment", "/"))
 
     def test_bad_options_are_refused(self):
-        for options in (["--speed", "fast"], ["--speed", "nan"], ["--speed", "0"], ["--threads", "0"], ["--port", "70000"],
+        for options in (["--speed", "fast"], ["--speed", "nan"], ["--speed", "0"], ["--threads", "0"],
+                        ["--port", "70000"],
                         ["--seed", "x"], ["--colour"]):
             self.assertIn(options[0], self.start_refused(*options, status=2))
 
@@ -2191,8 +2217,10 @@ class Documentation(unittest.TestCase):
         self.assertEqual((snapshot.world, snapshot.tick, snapshot.dropped_count), ("default", 120, 3))
         seen = columns(snapshot)
         self.assertEqual({k: list(v) for k, v in seen["organisms"].items()},
-                         {"id": [0, 2], "x": [10.5, 50.25], "y": [20, 30.0625], "radius": [10, 8.5], "health": [100, 42.5]})
-        self.assertEqual((seen["food"]["x"][0], seen["poison"]["y"][0], seen["obstacles"]["half_width"][0]), (5, 55, 15))
+                         {"id": [0, 2], "x": [10.5, 50.25], "y": [20, 30.0625], "radius": [10, 8.5],
+                          "health": [100, 42.5]})
+        self.assertEqual((seen["food"]["x"][0], seen["poison"]["y"][0], seen["obstacles"]["half_width"][0]),
+                         (5, 55, 15))
 
     def test_its_decoder_is_the_one_tested_here(self):
         text = open(protocol_path, encoding="utf-8").read()
