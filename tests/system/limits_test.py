@@ -3,7 +3,7 @@ table says happens, and everybody else goes on. EVOD and EVOCTL name the program
 classes.
 
 Driven elsewhere: waiting_events_max by tests/unit/runtime/outbox_test.cpp, for nothing outside can hold the network's
-thread still; lease_s, with all about leases, and running out of file descriptors by plain_client.py.
+thread still; lease_s, with all about leases, and running out of file descriptors by protocol_*_test.py.
 """
 import contextlib
 import pathlib

@@ -23,7 +23,6 @@ CPP_COMMENTS = False
 
 # Files that exceed a limit → why.
 LARGER_FILES = {
-    "tests/system/plain_client.py": "to be cut by its subjects",
     "tests/system/viewer/panels_test.cpp": "to be cut by its panels",
     "tests/system/web/page_test.py": "to be cut by its panels",
     "tests/unit/runtime/simulation_loop_test.cpp": "to be cut by its subjects",
