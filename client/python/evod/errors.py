@@ -1,15 +1,16 @@
-"""Exceptions. Every exception of this package derives from Error, and from the built-in exception that is closest to it.
+"""Exceptions. Every exception of this package derives from Error, and from the built-in exception that is closest to
+it.
 
     Error
     ├── InvalidArgument      ValueError             an argument is not allowed; `violations` lists every such argument
-    ├── NotFound             KeyError               there is no such world, island, organism, generation or planned change
+    ├── NotFound             KeyError               no such world, island, organism, generation or planned change
     ├── AlreadyExists        ValueError             a world with this name exists
     ├── PermissionDenied     PermissionError        the role of this client does not allow the call
     ├── ResourceExhausted    RuntimeError           a limit of the server is reached
     ├── FailedPrecondition   RuntimeError           the call is not possible in the current state
-    │   └── AnswerExpired    RuntimeError           the server no longer has the answer; the command may have been applied
+    │   └── AnswerExpired    RuntimeError           the server lost the answer; the command may have been applied
     ├── Aborted              RuntimeError           another client changed the state first
-    ├── Unimplemented        NotImplementedError    the server does not support the call: it may be older than this package
+    ├── Unimplemented        NotImplementedError    the server lacks the call: it may be older than this package
     ├── Unavailable          ConnectionError        the server is shutting down or cannot write to its disk
     ├── NoConnection         ConnectionError        no server answers, or the connection is closed
     │   └── Unauthenticated  PermissionError        the server requires a token, or does not know the given one
@@ -39,7 +40,8 @@ class Violation(NamedTuple):
 
 
 class Error(Exception):
-    """This package, the server or the program evod refused a call. If no subclass states otherwise, nothing was changed.
+    """This package, the server or the program evod refused a call. If no subclass states otherwise, nothing was
+    changed.
 
     Examples
     --------
@@ -54,7 +56,8 @@ class Error(Exception):
       survivors: got -1, allowed 0 to 1
     """
 
-    #: ``evod.v1.Code``: sent by the server, or the code that the server would have sent; None if no server was involved.
+    #: ``evod.v1.Code``: sent by the server, or the code that the server would have sent; None if no server was
+    #: involved.
     code: int | None
     #: ``evod.v1.Reason``: the documented reason for the code; 0 if the server gave none.
     reason: int = 0
@@ -187,7 +190,8 @@ class ProgramFailed(Error, RuntimeError):
 
 _OF_CODE: dict[int | None, type[Error]] = {
     kind._code: kind
-    for kind in (InvalidArgument, NotFound, AlreadyExists, PermissionDenied, ResourceExhausted, FailedPrecondition, Aborted,
+    for kind in (InvalidArgument, NotFound, AlreadyExists, PermissionDenied, ResourceExhausted, FailedPrecondition,
+                 Aborted,
                  Unimplemented, Unavailable, Unauthenticated, DamagedData)
 }  # fmt: skip
 
@@ -207,8 +211,8 @@ _PATH = re.compile(rf"\bfirst_generation\b|\b({'|'.join(sorted(_KINDS))})\.[a-z_
 def argument_of(field: str) -> str:
     """Returns the name of the argument of a function for the path of a field in a request.
 
-    >>> argument_of("set_parameters.mutation_chance"), argument_of("open_replay.at.generation"), argument_of("survivors")
-    ('mutation_chance', 'generation', 'survivors')
+    >>> argument_of("set_parameters.mutation_chance"), argument_of("open_replay.at.generation")
+    ('mutation_chance', 'generation')
     """
     if field in _ARGUMENTS:
         return _ARGUMENTS[field]
@@ -225,7 +229,8 @@ def _with_arguments(text: str) -> str:
 
 def printable(text: str) -> str:
     """Returns the text of a peer with '?' for characters that control a terminal or change the direction of text."""
-    return "".join("?" if unicodedata.category(character) in ("Cc", "Cf", "Zl", "Zp", "Cs") else character for character in text)
+    return "".join("?" if unicodedata.category(character) in ("Cc", "Cf", "Zl", "Zp", "Cs") else character
+                   for character in text)
 
 
 def refusal(status: commands_pb2.Status) -> Error:
@@ -244,7 +249,8 @@ def refusal(status: commands_pb2.Status) -> Error:
 
 def damaged_world(event: stream_pb2.Event) -> Error:
     """Returns the error for a world that has stopped: the server's answer to every request that names the world."""
-    return refusal(commands_pb2.Status(code=commands_pb2.CODE_FAILED_PRECONDITION, reason=commands_pb2.REASON_WORLD_DAMAGED,
+    return refusal(commands_pb2.Status(code=commands_pb2.CODE_FAILED_PRECONDITION,
+                                       reason=commands_pb2.REASON_WORLD_DAMAGED,
                                        message="the world does not run: " + event.world_damaged.reason))
 
 
@@ -265,6 +271,7 @@ def _restored(kind: type[E], message: str, violations: Iterable[Violation], code
     return error
 
 
-def wrong_argument(field: str, allowed: str, got: object, message: str = "an argument is not allowed") -> InvalidArgument:
+def wrong_argument(field: str, allowed: str, got: object,
+                   message: str = "an argument is not allowed") -> InvalidArgument:
     """Returns the error for one invalid argument."""
     return InvalidArgument(message, [Violation(field, allowed, str(got))])
