@@ -28,4 +28,5 @@ export const panels: ((context: PanelContext) => Panel)[] = [
   later("plots", texts.plots, ({PlotsPanel}, context) => new PlotsPanel(context)),
   (context) => new EventsPanel(context),
   later("freezer", texts.freezer, ({FreezerPanel}, context) => new FreezerPanel(context)),
+  later("physics", texts.physics, ({PhysicsPanel}, context) => new PhysicsPanel(context)),
 ];

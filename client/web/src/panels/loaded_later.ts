@@ -5,4 +5,5 @@ export {FreezerPanel} from "./freezer";
 export {GlassBoxPanel} from "./glass_box";
 export {new_world_dialog} from "./new_world";
 export {OrganismPanel} from "./organism";
+export {PhysicsPanel} from "./physics";
 export {PlotsPanel} from "./plots";
