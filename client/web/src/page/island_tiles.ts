@@ -1,5 +1,5 @@
-// IslandTiles: all islands of a world at once, as tiles over the canvas, in which the worker draws them. Each tile is a button, which
-// shows only its island.
+// IslandTiles: all islands of a world at once, as tiles over the canvas, in which the worker draws them. Each tile is a
+// button, which shows only its island.
 import type {FromWorker, TileInfo} from "../core/messages";
 import type {Size} from "../render/camera";
 import {tile_places, tiles_max} from "../render/tiles";

@@ -1,16 +1,15 @@
 // PaneTool: what a click on the island does: select, place food, poison or an organism, or remove.
-import type {Drawing, FromWorker, Tool} from "../core/messages";
+import type {Drawing, Tool} from "../core/messages";
 import type {Place, Remove} from "../core/protocol";
 import {tool_texts} from "../texts/pane";
 import type {ViewedWorld} from "../world/world";
+import type {Picked} from "./picker";
 
 /** The organism that the tool "organism" places: its genes, and its name: "a copy of organism 12". */
 export interface PlacedModel {
   name: string;
   genes: number[];
 }
-
-export type Picked = Extract<FromWorker, {kind: "picked"}>;
 
 const organism_radius_px = 10; // copies are placed at least so far from the walls
 

@@ -1,10 +1,13 @@
-// Shaders: draw circles, rectangles, lines and arrows, one triangle or point each, as in evoview (client/viewer/island/shapes.cpp).
+// Shaders: draw circles, rectangles, lines and arrows, one triangle or point each, as in evoview
+// (client/viewer/island/shapes.cpp).
 //
-// The vertex shader reads the shape with index gl_VertexID / 3 from a texture of integers (vertex pulling). The fragment shader
-// computes how much of a pixel a shape covers from its distance to the outline, so shapes are smooth at any zoom.
+// The vertex shader reads the shape with index gl_VertexID / 3 from a texture of integers (vertex pulling). The
+// fragment shader computes how much of a pixel a shape covers from its distance to the outline, so shapes are smooth at
+// any zoom.
 //
-// Texels of a shape: (x, y, w, h), and for "paired" shapes also (previous x, previous y, headings, colour). Positions are in steps; the
-// shader subtracts the camera's centre from them as integers, which is exact, before it multiplies by the zoom.
+// Texels of a shape: (x, y, w, h), and for "paired" shapes also (previous x, previous y, headings, colour). Positions
+// are in steps; the shader subtracts the camera's centre from them as integers, which is exact, before it multiplies by
+// the zoom.
 import type {Form} from "./look";
 
 export interface Variant {
