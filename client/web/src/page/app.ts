@@ -3,7 +3,6 @@
 import {kind_of, type RequestKind} from "../core/messages";
 import type {Event as WorldEvent} from "../core/protocol";
 import {panels} from "../panels/all";
-import {unused_name} from "../panels/new_world";
 import {Column} from "./column";
 import {set_attribute} from "../widgets/controls";
 import {copy_text} from "../widgets/copy";
@@ -12,6 +11,8 @@ import {event_text, noticed_events} from "../world/event_text";
 import {FitnessCurve} from "../plots/fitness_curve";
 import {LinkFollower} from "./link_follower";
 import {link_of} from "../world/link";
+import {unused_name} from "../world/names";
+import type {PlacedModel} from "../world/panel_context";
 import {Help, type KeyTarget, listen_to_keys} from "./keys";
 import {Banners, Notices} from "../widgets/notices";
 import type {PaneArea} from "./pane_area";
@@ -130,6 +131,14 @@ export class App implements KeyTarget {
     if (subject) {
       panel.show?.(subject);
     }
+  };
+
+  place_by_clicks = (model: PlacedModel): boolean => {
+    const problem = this.panes.focused.pane.tool.place_copies_of(model);
+    if (problem) {
+      this.notify(problem);
+    }
+    return problem === "";
   };
 
   notify = (text: string): void => this.#notices.show(text);

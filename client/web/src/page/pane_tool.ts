@@ -2,14 +2,10 @@
 import type {Drawing, Tool} from "../core/messages";
 import type {Place, Remove} from "../core/protocol";
 import {tool_texts} from "../texts/pane";
+import {gene_problem} from "../world/names";
+import type {PlacedModel} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
 import type {Picked} from "./picker";
-
-/** The organism that the tool "organism" places: its genes, and its name: "a copy of organism 12". */
-export interface PlacedModel {
-  name: string;
-  genes: number[];
-}
 
 const organism_radius_px = 10; // copies are placed at least so far from the walls
 
@@ -34,15 +30,20 @@ export class PaneTool {
     this.#on_change();
   }
 
-  /** Chooses the tool "organism" with these genes. */
-  place_copies_of(model: PlacedModel): void {
-    this.model = model;
-    this.tool = "organism";
-    this.#on_change();
+  /** Chooses the tool "organism" with these genes. Returns why it cannot act in this world, as a sentence; empty if it
+   *  can. */
+  place_copies_of(model: PlacedModel): string {
+    const problem = this.problem("organism", model);
+    if (problem === "") {
+      this.model = model;
+      this.tool = "organism";
+      this.#on_change();
+    }
+    return problem;
   }
 
   /** Why the tool cannot act in this world, as a sentence; empty if it can. */
-  problem(tool = this.tool): string {
+  problem(tool = this.tool, model = this.model): string {
     const world = this.#world;
     if (tool === "select") {
       return "";
@@ -60,7 +61,13 @@ export class PaneTool {
     if (why !== "") {
       return why;
     }
-    return tool === "organism" && this.model === null && world.organism === null ? tool_texts.no_organism : "";
+    if (tool === "organism" && model === null && world.organism === null) {
+      return tool_texts.no_organism;
+    }
+    const copies_selected = model === this.model && this.tool !== "organism" && world.organism !== null;
+    return tool === "organism" && model?.gene_names && !copies_selected ?
+      gene_problem(model.name, model.gene_names, world.name, world.gene_names) :
+      "";
   }
 
   /** What a click there would do; empty: it would select. */
