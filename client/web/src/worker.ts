@@ -102,7 +102,7 @@ function take(events: CoreEvent[]): void {
   }
 }
 
-/** Tells the page the end of one of its requests. */
+/** Posts the answer to one of the requests of the page. */
 function answer(id_of_core: number, message: (id: number) => FromWorker): void {
   const id = ids.get(id_of_core);
   ids.delete(id_of_core);
