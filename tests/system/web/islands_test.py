@@ -21,7 +21,7 @@ class Islands(Case):
         control.run_to(150)  # in the second generation
         browser.open(self.page(server))
         whole = browser.pixels()
-        browser.press("All islands")
+        browser.element("body").send_keys("i")  # the focus goes to the chosen island
         browser.wait("document.querySelectorAll('.island-tile').length === arguments[0]", "all tiles", ISLANDS)
         browser.wait(f"{TILES}.every((tile) => tile.ariaLabel.includes('generation 2'))", "all islands in generation 2")
         self.assertEqual(browser.value("document.querySelectorAll('.pane-area canvas.pane-canvas').length"), 1)
@@ -44,6 +44,10 @@ class Islands(Case):
         browser.wait("evod.app.world().snapshot?.island === 1", "island 1 alone")
         browser.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
         browser.wait("document.activeElement.ariaLabel?.startsWith('Island 1:')", "the tile of island 1")
+        browser.press("All islands")
+        browser.wait("document.querySelectorAll('.island-tile').length === 0", "only one island")
+        browser.press("All islands")
+        browser.wait(f"{TILES}.length > 0 && document.activeElement.ariaLabel === 'All islands'", "the button's focus")
         browser.click(browser.element(f".island-tile:nth-child({ISLANDS})"))
         browser.wait("evod.app.world().snapshot?.island === arguments[0]", "the last island", ISLANDS - 1)
 

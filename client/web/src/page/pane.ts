@@ -35,8 +35,6 @@ export interface PaneOptions {
   on_tool?(): void;
   /** Called after the view has moved, and after the size of the island is known first. */
   on_view?(view: PaneView, why: "moved"|"known"): void;
-  /** Called after all islands, or only one, were shown. */
-  on_tiles?(): void;
 }
 
 const double_click_ms = 350, double_click_pixels = 20;
@@ -68,7 +66,7 @@ export class Pane {
     this.#world = options.world;
     this.view = new PaneView(this.#world, (view) => options.on_view?.(view, "moved"));
     this.tool = new PaneTool(this.#world, () => this.#tool_changed());
-    this.tiles = new IslandTiles(this.#world, () => this.#tiles_changed());
+    this.tiles = new IslandTiles(this.#world, (had_focus) => this.#tiles_changed(had_focus));
     this.element =
       h("div", {class: "pane"}, this.#canvas, this.#legend.element, this.#hint, this.#note, this.tiles.element,
         h("div", {class: "pane-focus"}));
@@ -138,15 +136,14 @@ export class Pane {
     this.#options.on_view?.(this.view, "known");
   }
 
-  #tiles_changed(): void {
+  #tiles_changed(had_focus: boolean): void {
     const {is_on} = this.tiles;
     this.view.shows_all = is_on;
     this.#canvas.inert = is_on;
     this.#refresh();
-    if (!is_on) {
+    if (!is_on && had_focus) {
       this.#canvas.focus({preventScroll: true});
     }
-    this.#options.on_tiles?.();
   }
 
   #show_note(text: string): void {
