@@ -47,10 +47,12 @@ def protoc(*options: str) -> None:
     """Runs protoc for all .proto files of evod."""
     protos = sorted((sources / "proto" / "evod" / "v1").glob("*.proto"))
     if not protos:
-        raise SystemExit(f"there are no .proto files in {sources / 'proto'}: build this package inside evod's source tree")
+        raise SystemExit(f"there are no .proto files in {sources / 'proto'}: build this package inside evod's source "
+                         "tree")
     program = os.environ.get("PROTOC") or shutil.which("protoc")
     if not program:
-        raise SystemExit("protoc is missing: install protobuf-compiler, or set the environment variable PROTOC to its path")
+        raise SystemExit("protoc is missing: install protobuf-compiler, or set the environment variable PROTOC to its "
+                         "path")
     subprocess.run([program, f"--proto_path={sources / 'proto'}", *options, *map(str, protos)], check=True)
 
 

@@ -1,4 +1,5 @@
-"""The examples in docstrings print what they show, and every public name has a docstring. tests/docs runs the README."""
+"""The examples in docstrings print what they show, and every public name has a docstring. tests/docs runs the
+README."""
 import ast
 import asyncio
 import doctest
@@ -11,7 +12,8 @@ from unittest import mock
 import evod
 import evod.aio
 
-MODULES = sorted(module.name for module in pkgutil.walk_packages(evod.__path__, "evod.") if not module.name.startswith("evod.v1"))
+MODULES = sorted(module.name for module in pkgutil.walk_packages(evod.__path__, "evod.")
+                 if not module.name.startswith("evod.v1"))
 #: The name says it all.
 PLAIN = {"items", "keys", "values"}
 

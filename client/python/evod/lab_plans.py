@@ -52,7 +52,8 @@ class LabPlans:
         return self._registry
 
     def world_name(self, name: str | None) -> Plan[str]:
-        """Checks that a world exists and returns its name. Default: the only world, or "default" if there are several."""
+        """Checks that a world exists and returns its name. Default: the only world, or "default" if there are
+        several."""
         listed = (yield from request("list_worlds")).worlds
         known = sorted(world.name for world in (*listed.worlds, *listed.damaged))
         if name is None:
@@ -155,7 +156,8 @@ class LabPlans:
         return ids
 
     def evaluate(self, world: str, generations: int | None) -> Plan[GenerationStream]:
-        """Runs a world whose fitness comes from clients. GenerationStream.step() then also returns the fitness it awaits."""
+        """Runs a world whose fitness comes from clients. GenerationStream.step() then also returns the fitness it
+        awaits."""
         parameters = yield from self.parameters(world)
         self._require("fitness", "computes fitness itself and takes none from clients")
         if parameters.fitness != "external":
@@ -265,8 +267,8 @@ class LabPlans:
         """Runs a world. Subscribes to its events before, so that no generation is missed."""
         stream = GenerationStream(self.core, world, (yield from self.subscribe_events(world)))
         try:
-            # A waiting world is at the end of a generation. The event for this generation was sent earlier, so the stream
-            # begins with the next generation.
+            # A waiting world is at the end of a generation. The event for this generation was sent earlier, so the
+            # stream begins with the next generation.
             last = (yield from request("get_statistics", world=world)).statistics.last
             info = yield from request_world("run", world=world, generations=generations)
         except BaseException:
@@ -299,7 +301,8 @@ class LabPlans:
         return (yield from self.wait(world))
 
     def snapshot(self, world: str, island: int, genes: bool) -> Plan[Snapshot]:
-        """Returns the current state of an island. Subscribes to snapshots and ends the subscription after the first one."""
+        """Returns the current state of an island. Subscribes to snapshots and ends the subscription after the first
+        one."""
         stream = SnapshotStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)), genes)
         try:
             return (yield from stream.next())

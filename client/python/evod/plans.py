@@ -1,7 +1,7 @@
 """Plans: operations of a client that may consist of several requests. This module does no I/O.
 
-A plan is a generator. It yields a request and receives the response, or yields an Until and continues when the condition is
-true. Its return value is the result of the operation. Link.perform() (aio/link.py) executes plans.
+A plan is a generator. It yields a request and receives the response, or yields an Until and continues when the
+condition is true. Its return value is the result of the operation. Link.perform() (aio/link.py) executes plans.
 """
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ M = TypeVar("M", bound=google.protobuf.message.Message)
 
 @dataclasses.dataclass(frozen=True)
 class Until:
-    """Makes the plan wait until `condition()` is true: as long as the server can be reached, or also at most the timeout."""
+    """Makes the plan wait until `condition()` is true: as long as the server can be reached, or also at most the
+    timeout."""
 
     condition: Callable[[], object]
     within_timeout: bool = False
@@ -79,7 +80,8 @@ def execute(message: c.Request) -> Plan[c.Response]:
 
 
 def request(kind: str, /, **fields: Any) -> Plan[c.Response]:
-    """Sends a request. `kind` is its field in evod.v1.Request. Raises Error for a wrong type, or if the server refuses."""
+    """Sends a request. `kind` is its field in evod.v1.Request. Raises Error for a wrong type, or if the server
+    refuses."""
     message = build(type(getattr(c.Request(), kind)), f"{kind}.", **fields)
     return (yield from execute(c.Request(**{kind: message})))
 
@@ -89,7 +91,8 @@ def request_world(kind: str, /, **fields: Any) -> Plan[world_pb2.WorldInfo]:
     return (yield from request(kind, **fields)).world
 
 
-# ---- streams ----------------------------------------------------------------------------------------------------------
+# ---- streams
+# ----------------------------------------------------------------------------------------------------------
 
 
 class EventStream:
@@ -108,7 +111,8 @@ class EventStream:
 
 
 class SnapshotStream:
-    """The snapshots of a subscription, in the order in which they arrive. next() acknowledges the snapshot returned before.
+    """The snapshots of a subscription, in the order in which they arrive. next() acknowledges the snapshot returned
+    before.
 
     genes  whether the organisms of the snapshots have their genes.
     """
@@ -182,7 +186,8 @@ class GenerationStream:
         self._next = 0  # number of the next generation to return
         self._goal: int | None = None  # the first generation after the run; None: the run has no end
         self._ready: list[Generation] = []  # generations that next() returns before it processes another event
-        self._began = False  # whether the event caused by this Run has arrived; earlier events belong to earlier commands
+        # whether the event caused by this Run has arrived; earlier events belong to earlier commands
+        self._began = False
         self._over = False  # whether the run has ended; next() then returns only the generations in _ready
         self._awaited: world_pb2.AwaitedFitness | None = None  # the fitness for which the world waits, for step()
 
@@ -310,7 +315,8 @@ def close_replay(world: str) -> Plan[None]:
         pass
 
 
-# ---- queries ------------------------------------------------------------------------------------------------------------
+# ---- queries
+# ------------------------------------------------------------------------------------------------------------
 
 
 def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
@@ -334,7 +340,8 @@ def history(world: str, first: int | None, last: int | None, island: int | None)
     """Requests the ended generations in several parts and returns them."""
     rows: list[world_pb2.GenerationStatistics] = []
     while True:
-        response = yield from request("get_history", world=world, first_generation=first, last_generation=last, island=island)
+        response = yield from request("get_history", world=world, first_generation=first, last_generation=last,
+                                      island=island)
         answer = response.history
         rows += answer.generations
         if not answer.HasField("next_generation"):
@@ -414,7 +421,8 @@ def export(
     return b"".join(text).decode()
 
 
-# ---- arguments ----------------------------------------------------------------------------------------------------------
+# ---- arguments
+# ----------------------------------------------------------------------------------------------------------
 
 
 def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
@@ -464,7 +472,8 @@ def view_message(
     return build(c.View, "", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
 
 
-def rate(function: Callable[[Genes, Life], numpy.typing.ArrayLike], population: Population) -> numpy.typing.NDArray[Any]:
+def rate(function: Callable[[Genes, Life], numpy.typing.ArrayLike],
+         population: Population) -> numpy.typing.NDArray[Any]:
     """Calls a fitness function and returns its numbers. Raises InvalidArgument for a wrong shape or number."""
     result = function(population.genes, population.life)
     allowed = f"an array of {len(population)} numbers, one for each organism"
@@ -477,7 +486,8 @@ def rate(function: Callable[[Genes, Life], numpy.typing.ArrayLike], population: 
         raise wrong_argument("fitness", allowed, f"the shape {fitness.shape}", message)
     wrong = numpy.flatnonzero(~(numpy.abs(fitness) <= FITNESS_MAX))
     if len(wrong):
-        faults = [Violation(f"fitness[{i}]", f"{-FITNESS_MAX:g} to {FITNESS_MAX:g}", str(fitness[i])) for i in wrong[:5]]
+        faults = [Violation(f"fitness[{i}]", f"{-FITNESS_MAX:g} to {FITNESS_MAX:g}", str(fitness[i]))
+                  for i in wrong[:5]]
         raise InvalidArgument(f"{message}: {len(wrong)} of {len(fitness)} numbers", faults)
     return fitness
 

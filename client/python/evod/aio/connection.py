@@ -37,19 +37,19 @@ async def connect(
     server
         HOST, HOST:PORT or [IPV6]:PORT; the default port is 7744.
     token, token_file
-        The access token, or a file that contains it and that only its owner can read. If neither is given, the token is read
-        from the environment variable EVOD_TOKEN.
+        The access token, or a file that contains it and that only its owner can read. If neither is given, the token is
+        read from the environment variable EVOD_TOKEN.
     tls
         Use TLS. The server must have a certificate that this system trusts.
     ca
-        Use TLS, and trust the certificates in this PEM file, such as the server's own evod.crt. If it is not given, the file
-        named by the environment variable EVOD_CA is used.
+        Use TLS, and trust the certificates in this PEM file, such as the server's own evod.crt. If it is not given, the
+        file named by the environment variable EVOD_CA is used.
     cert, key
-        Use TLS with this client certificate and its private key, for servers that require one. Both are PEM files; one file
-        may contain both.
+        Use TLS with this client certificate and its private key, for servers that require one. Both are PEM files; one
+        file may contain both.
     timeout_s
-        The longest time in seconds to wait for an answer, and for a server that cannot be reached. After this time, calls
-        fail. Calls for which the server must replay a run may take 20 times as long.
+        The longest time in seconds to wait for an answer, and for a server that cannot be reached. After this time,
+        calls fail. Calls for which the server must replay a run may take 20 times as long.
     reconnect
         Whether to reconnect after the connection was lost.
     client_name
@@ -97,13 +97,13 @@ async def local(
     seed
         Seed of the first world, 0 to 2**64 - 1. By default the server draws a random seed.
     experiment
-        Parameters of the first world: an experiment file, or a mapping of names to values. By default all parameters have
-        their default values.
+        Parameters of the first world: an experiment file, or a mapping of names to values. By default all parameters
+        have their default values.
     data
         Folder for the run files. By default a temporary folder, which is deleted when the server stops.
     speed
-        Speed of every world, including worlds, forks and replays created later: simulated seconds per second, or "max" for as
-        fast as the machine allows.
+        Speed of every world, including worlds, forks and replays created later: simulated seconds per second, or "max"
+        for as fast as the machine allows.
     threads
         Number of threads for the simulation. By default one for each processor.
     program
@@ -150,7 +150,8 @@ class LocalLab(Lab):
         super().__init__(link)
         self._server = server
         self._plans.speed_of_new_worlds = speed
-        # Worlds and streams hold references to the link. When it is garbage collected, no object can use the server any more.
+        # Worlds and streams hold references to the link. When it is garbage collected, no object can use the server any
+        # more.
         weakref.finalize(link, server.end)
 
     async def close(self) -> None:

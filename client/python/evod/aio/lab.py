@@ -102,8 +102,8 @@ class Lab(Closing):
         return tuple(result(info) for info in await self._link.perform(plans.worlds()))
 
     async def damaged_worlds(self) -> tuple[DamagedWorld, ...]:
-        """Returns the worlds that do not run, because the server cannot restore them from their run files. Every method of
-        such a world raises `FailedPrecondition` with the reason, except `World.export` and `World.delete`."""
+        """Returns the worlds that do not run, because the server cannot restore them from their run files. Every method
+        of such a world raises `FailedPrecondition` with the reason, except `World.export` and `World.delete`."""
         return tuple(result(world) for world in await self._link.perform(plans.damaged_worlds()))
 
     async def world(self, name: str | None = None) -> World:
@@ -132,14 +132,14 @@ class Lab(Closing):
         name
             The name of the new world: 1 to 64 letters, digits, "_" and "-". No other world may have this name.
         parameters
-            A mapping of parameter names to values. Parameters that are not given have their default values. A mapping in
-            place of a value is a schedule: {1: 0.2, 30: 0.05} sets each value at the first tick of its generation. Before
-            the first generation in the schedule the parameter has its default value.
+            A mapping of parameter names to values. Parameters that are not given have their default values. A mapping
+            in place of a value is a schedule: {1: 0.2, 30: 0.05} sets each value at the first tick of its generation.
+            Before the first generation in the schedule the parameter has its default value.
         seed
             The seed of the run, 0 to 2**64 - 1. By default the server draws a random seed.
         population
-            The genes of the first generation: one array for each island, with shape (population_size, genes) and columns in the
-            order of `WorldInfo.gene_names`. By default the server draws the genes with the seed.
+            The genes of the first generation: one array for each island, with shape (population_size, genes) and
+            columns in the order of `WorldInfo.gene_names`. By default the server draws the genes with the seed.
         speed
             The speed, as for `World.set_speed`. By default real time, or the speed given to `local`.
 
@@ -183,7 +183,8 @@ class Lab(Closing):
         return Events(self._link, plans.EventStream(self._link.core, subscription))
 
     async def shut_down(self) -> None:
-        """Stops the server. Before it stops, it answers all requests that it has received, and writes all runs to disk."""
+        """Stops the server. Before it stops, it answers all requests that it has received, and writes all runs to
+        disk."""
         await self._request("shut_down")
 
 
@@ -223,20 +224,22 @@ class World(ParameterAttributes, WorldQueries):
         at_tick: int | None = None,
         **more: object,
     ) -> Parameters:
-        """Sets parameters: ``world.set(mutation_chance=0.1, selection="tournament")``. If one value is refused, sets none.
+        """Sets parameters: ``world.set(mutation_chance=0.1, selection="tournament")``. If one value is refused, sets
+        none.
 
         Parameters
         ----------
         values, **more
-            The new values by parameter name, as a mapping or as keyword arguments. Values out of range are refused before a
-            request is sent.
+            The new values by parameter name, as a mapping or as keyword arguments. Values out of range are refused
+            before a request is sent.
         dry_run
             Check the values and return the parameters as they would be after the change. Do not change anything.
         expected_revision
             The `Parameters.revision` on which the change is based. The server refuses the change if another client has
             changed parameters since that revision.
         at_generation
-            Plan the change for the first tick of this generation. `Parameters.change` of the result is the planned change.
+            Plan the change for the first tick of this generation. `Parameters.change` of the result is the planned
+            change.
         at_tick
             Plan the change for the moment after this tick, counted from the beginning of the run.
 
@@ -288,11 +291,11 @@ class World(ParameterAttributes, WorldQueries):
         Parameters
         ----------
         food, poison
-            The positions as pairs (x, y) in px: a list of pairs, or an array of shape (count, 2). They must be inside the
-            walls and clear of crates and obstacles.
+            The positions as pairs (x, y) in px: a list of pairs, or an array of shape (count, 2). They must be inside
+            the walls and clear of crates and obstacles.
         organisms
-            Triples (x, y, genes). `genes` are numbers in the order of `WorldInfo.gene_names`, or numbers by gene name. The
-            place must also be clear of other organisms.
+            Triples (x, y, genes). `genes` are numbers in the order of `WorldInfo.gene_names`, or numbers by gene name.
+            The place must also be clear of other organisms.
         island
             The index of the island.
 
@@ -384,27 +387,28 @@ class World(ParameterAttributes, WorldQueries):
     ) -> History:
         """Runs the world with any fitness function, and returns the ended generations.
 
-        The world must have the parameter ``fitness`` external. It then waits at the end of each generation for the fitness
-        of its organisms, for each island. With ``external_bodies`` off, organisms do not live on the islands, and evod is
-        a genetic algorithm that maximises the function. The run file contains all numbers, so the run can be repeated and
-        verified without the function.
+        The world must have the parameter ``fitness`` external. It then waits at the end of each generation for the
+        fitness of its organisms, for each island. With ``external_bodies`` off, organisms do not live on the islands,
+        and evod is a genetic algorithm that maximises the function. The run file contains all numbers, so the run can
+        be repeated and verified without the function.
 
         Parameters
         ----------
         function
-            It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and returns
-            one number for each organism: larger is better, -1e100 to 1e100.
+            It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and
+            returns one number for each organism: larger is better, -1e100 to 1e100.
         generations
-            The number of further generations, at least 1. By default until the world is paused or a termination criterion
-            ends the run.
+            The number of further generations, at least 1. By default until the world is paused or a termination
+            criterion ends the run.
 
         Raises
         ------
         FailedPrecondition
             The world computes its fitness itself.
         InvalidArgument
-            The function has returned an array of a wrong shape, or a number that is not allowed. The world waits for fitness
-            as before. It does so too if the function raises an exception, or if this program ends: any client can go on.
+            The function has returned an array of a wrong shape, or a number that is not allowed. The world waits for
+            fitness as before. It does so too if the function raises an exception, or if this program ends: any client
+            can go on.
 
         Examples
         --------
@@ -426,7 +430,8 @@ class World(ParameterAttributes, WorldQueries):
         return await self._link.perform(plan)
 
     async def run_until_tick(self, tick: int) -> WorldInfo:
-        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the pause."""
+        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the
+        pause."""
         return await self._command("run_until_tick", tick=tick)
 
     async def step(self, ticks: int = 1) -> WorldInfo:
@@ -462,7 +467,8 @@ class World(ParameterAttributes, WorldQueries):
         return await self._command("set_speed", speed=plans.speed_message(speed))
 
     async def reset(self, seed: int | None = None) -> WorldInfo:
-        """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for `run`."""
+        """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for
+        `run`."""
         return await self._command("reset_world", seed=seed)
 
     async def release_lease(self) -> WorldInfo:

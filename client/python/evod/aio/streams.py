@@ -1,5 +1,5 @@
-"""Objects that are closed after their use, and the streams of a world: generations, snapshots, events. evod.streams is generated
-from this file.
+"""Objects that are closed after their use, and the streams of a world: generations, snapshots, events. evod.streams is
+generated from this file.
 
 Threads      call everything on the event loop on which connect() or local() ran.
 """
@@ -67,7 +67,8 @@ class Run(_Stream):
         return f"<run of {info.name}: generations {info.generation} {end}>"
 
     def _repr_html_(self) -> str:
-        return html_table((), (("world", self.info.name), ("began", f"generation {self.info.generation}")), repr(self)[1:-1])
+        return html_table((), (("world", self.info.name), ("began", f"generation {self.info.generation}")),
+                          repr(self)[1:-1])
 
     @property
     def info(self) -> WorldInfo:
@@ -127,7 +128,8 @@ class Snapshots(_Stream):
 
     @property
     def rate_hz(self) -> float:
-        """The largest number of snapshots per second for each island: the requested rate, or the server's lower limit."""
+        """The largest number of snapshots per second for each island: the requested rate, or the server's lower
+        limit."""
         return self._stream.rate_hz
 
     async def set_view(
@@ -136,19 +138,25 @@ class Snapshots(_Stream):
         detail: str | None = None,
         bytes_per_s_max: int | None = None,
     ) -> None:
-        """Changes the view. The subscription must have been created with one. The arguments are as for `World.snapshots`."""
+        """Changes the view. The subscription must have been created with one. The arguments are as for
+        `World.snapshots`."""
         view = plans.view_message(region, detail, bytes_per_s_max) or c.View()
         await self._link.perform(self._stream.set_view(view))
 
     async def request_keyframe(self) -> None:
-        """Requests a keyframe of each island: a snapshot encoded without a baseline. Works even if the world is paused."""
+        """Requests a keyframe of each island: a snapshot encoded without a baseline. Works even if the world is
+        paused."""
         await self._link.perform(self._stream.request_keyframe())
 
 
 class Events(_Stream):
     """A subscription to events, returned by `World.events` and `Lab.events`. Iterating it yields the events.
 
-    After a reconnect the first event is an `events_dropped` with the count 0, because the number of missed events is unknown.
+    `event.text` is the event in one English sentence; it is empty in an `events_dropped` that this package itself
+    creates.
+
+    After a reconnect the first event is an `events_dropped` with the count 0, because the number of missed events is
+    unknown.
     """
 
     _stream: plans.EventStream

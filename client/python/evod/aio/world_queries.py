@@ -1,5 +1,5 @@
-"""What a client reads of a world: its state, history, organisms and tables, and plots of them. evod.world_queries is generated
-from this file.
+"""What a client reads of a world: its state, history, organisms and tables, and plots of them. evod.world_queries is
+generated from this file.
 
 Threads      call everything on the event loop on which connect() or local() ran.
 """
@@ -69,19 +69,20 @@ class WorldQueries:
         Parameters
         ----------
         rate_hz
-            The largest number of snapshots per second for each island. The server may lower it: see `Snapshots.rate_hz`.
+            The largest number of snapshots per second for each island. The server may lower it: see
+            `Snapshots.rate_hz`.
         island
             The index of the island to observe. By default snapshots of all islands arrive in turn.
         genes
-            Whether ``snapshot.organisms.genes`` contains the genes. They are requested once per generation and island. If
-            the generation has ended before, they are read from the run file.
+            Whether ``snapshot.organisms.genes`` contains the genes. They are requested once per generation and island.
+            If the generation has ended before, they are read from the run file.
         region
             A rectangle, as (left, top, width, height) in px. Snapshots contain only the tiles that overlap it.
         detail
             The highest level of detail: "full", "dots" or "density".
         bytes_per_s_max
-            The largest number of bytes per second that the server sends. To stay below it, the server lowers the level of
-            detail.
+            The largest number of bytes per second that the server sends. To stay below it, the server lowers the level
+            of detail.
 
         Examples
         --------
@@ -255,7 +256,8 @@ class WorldQueries:
         return plotting.plot_genes(history.columns(), history.gene_names, ax)
 
     async def plot_selection(self, gene: str, ax: Any = None) -> Any:
-        """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
+        """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the
+        axes."""
         history = await self.history()
         return plotting.plot_selection(history.columns(), history.gene_names, gene, ax)
 
