@@ -232,7 +232,7 @@ def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
     violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
     # The lines after the sentence are those that str() makes of the violations.
-    message = _with_arguments(printable(status.message.partition("\n")[0]))
+    message = _with_arguments(printable(status.message.partition("\n  ")[0]))
     kind = AnswerExpired if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD else _OF_CODE.get(status.code, Error)
     error = kind(message, violations, status.code)
     error.reason = status.reason
