@@ -184,12 +184,3 @@ test("the colours name lineages and scales", () => {
   const { least, most, unknown } = family.colouring_of(tree, { kind: "gene", gene: 0 }, genes).legend;
   assert.deepEqual([least, most, unknown], [1.5, 2.5, 6]);
 });
-
-test("sentences name the common ancestors", () => {
-  const { two_descend_from: two, all_descend_from: all } = text.family_texts;
-  assert.equal(two(root(1), root(2), [root(4, 2), root(5, 2)]), "A: organism 1 of generation 3. B: organism 2 of generation 3. "
-    + "Most recent common ancestors of both: organisms 4 and 5 of generation 2.");
-  assert.match(two(root(4, 2), root(2), [root(4, 2)]), /A is an ancestor of B\.$/);
-  assert.equal(all(4, 3, [root(7, 1)], false),
-    "All 4 organisms of generation 3 descend from organism 7 of generation 1, 2 generations earlier: their most recent common ancestor.");
-});

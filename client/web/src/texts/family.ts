@@ -1,4 +1,5 @@
 // Texts of the panel "Family tree".
+import {choice_text, counted} from "./breeding";
 import {three_digits, with_separators} from "./numbers";
 
 interface Named {
@@ -13,10 +14,6 @@ interface Described extends Named {
   fitness: number|null;
   child_count: number;
   kept_count: number;
-}
-
-function counted(count: number, one: string, many: string): string {
-  return `${with_separators(count)} ${count === 1 ? one : many}`;
 }
 
 function of_island(island: number): string {
@@ -134,7 +131,7 @@ export const family_texts = {
     `Mutated genes: ${
       changes.map(({gene, before, after, how}) => `${gene} ${before} → ${after} (${how})`).join("; ")}` +
       (more > 0 ? `; and ${with_separators(more)} more.` : "."),
-  order_mutated: (method: string): string => ` The order of the genes mutated (${method.replace(/_/g, " ")}).`,
+  order_mutated: (method: string): string => ` The order of the genes mutated (${choice_text(method)}).`,
   loading_changes: "Loading the changed genes …",
   changes_unknown: (problem: string): string => `The changed genes are unknown: ${problem}.`,
 
