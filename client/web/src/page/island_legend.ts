@@ -46,10 +46,12 @@ export class IslandLegend {
     this.element = h("div", {class: "island-legend", hidden: true}, this.#scale, this.#title, this.#entries);
   }
 
-  refresh(world: ViewedWorld): void {
+  /** shows_all: all islands are shown, which have colours only by health. */
+  refresh(world: ViewedWorld, shows_all: boolean): void {
     const scale = scale_of(world);
     const {title, entries} = entries_of(world);
-    this.element.hidden = world.drawing === null || (scale === null && entries.length === 0);
+    const is_known = !shows_all || (world.look.colour_by === "health" && world.drawing?.density === null);
+    this.element.hidden = world.drawing === null || !is_known || (scale === null && entries.length === 0);
     if (this.element.hidden) {
       return;
     }

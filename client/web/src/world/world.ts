@@ -19,7 +19,7 @@ const poll_ms = 250;
 const missed_wait_min_ms = 1000,
       missed_wait_factor = 4; // at most a fifth of the time goes into reading generations whose events were dropped
 const range_ms = 1000; // between two requests for the range of a replay, which grows with the live world
-const no_runs = "This server stores no runs, so it cannot replay them: start it without --keep-nothing";
+const no_runs = "The run of this world is not stored.";
 const seek_wait_ms = 5000; // for the first snapshot after a seek
 const gene_statistics_max = 400_000; // kept in the history of a world
 export const speed_min = 1 / 1024, speed_max = 10000; // times real time
