@@ -1,5 +1,5 @@
-// FreezerEntry: the chosen entry of the freezer: begins a world with it, saves it as a file, renames and deletes it, places
-// copies and compares genes.
+// FreezerEntry: the chosen entry of the freezer: begins a world with it, saves it as a file, renames and deletes it,
+// places copies and compares genes.
 import type {Freezer} from "../freezer/freezer";
 import {is_organism, population_text} from "../freezer/population_csv";
 import {common_texts} from "../texts/common";
