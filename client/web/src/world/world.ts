@@ -3,7 +3,6 @@
 // Owner        main; one per pane. The pane and the panels read it, and change what is shown by its methods.
 // Polling      organism and population are read at most 4 times a second, and only while the page is visible and
 //              something shows them. Everything else follows from answers, events and snapshots.
-import {experiment_text} from "../texts/texts";
 
 import {Changes} from "./changes";
 
@@ -110,7 +109,7 @@ export class ViewedWorld {
 
   /** What the organisms of the world try to do, as sentences; empty until the parameters have arrived. */
   get experiment(): string {
-    return this.parameters ? experiment_text(this.parameters) : "";
+    return this.parameters?.summary ?? "";
   }
 
   /** "RUN_STATE_RUNNING" …; "" before anything is known. Assumes the effect of commands that are not answered yet. */
