@@ -386,7 +386,7 @@ class Controls(Case):
         browser.take_part()
         browser.press("Max")
         self.control.wait_world(lambda world: world.speed.max, "default")
-        browser.wait("evod.app.world().speed?.max", "the maximum speed")
+        browser.wait("evod.app.world().control.speed?.max", "the maximum speed")
         browser.press("One generation")
         self.control.wait_world(lambda world: world.tick == 120 and world.state == w.RUN_STATE_WAITING, "default")
         self.shown_tick(120)
@@ -501,7 +501,7 @@ class Past(Case):
         browser = self.browser
         browser.open(self.page(self.served, "#world=default&generation=2&tick=30&island=0&organism=7"))
         before = self.shown(2, 30)
-        browser.wait("evod.app.world().selected === 7", "the selected organism")
+        browser.wait("evod.app.world().selection.id === 7", "the selected organism")
         link = browser.run("""let copied = null;
             navigator.clipboard.writeText = async (text) => { copied = text; };
             arguments[0].click();
@@ -555,7 +555,7 @@ class Connection(Case):
         browser.wait_for_text("not connected", ".pane-state")
         self.assertEqual(browser.snapshot()["tick"], 130)  # the last image stays
         browser.run("""globalThis.answered = null;
-            evod.app.world().run_until_tick(200).then(() => answered = "yes", (error) => answered = error.message);""")
+            evod.app.world().control.run_until_tick(200).then(() => answered = "yes", (error) => answered = error.message);""")
         self.restart()
         browser.wait("answered", "the answer of the new server")
         self.assertEqual(browser.value("answered"), "yes")
@@ -662,7 +662,7 @@ class Keyboard(Case):
         browser.wait("evod.server.taking_part && !document.querySelector('.run-bar .run').ariaDisabled", "an enabled button")
         browser.element(".run-bar .run").send_keys(Keys.ENTER)
         self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, "default")
-        browser.wait("evod.app.world().state === 'RUN_STATE_RUNNING'", "running")
+        browser.wait("evod.app.world().control.state === 'RUN_STATE_RUNNING'", "running")
         browser.element(".pane-canvas").send_keys(Keys.SPACE)
         paused = self.control.wait_world(lambda world: world.state == w.RUN_STATE_PAUSED, "default")
         self.shown_tick(paused.tick)
@@ -716,7 +716,7 @@ class Keyboard(Case):
         self.assertGreaterEqual(len(alone), 2)
         for organism in alone[:3]:
             browser.tap(*place[organism])
-            browser.wait("evod.app.world().selected === arguments[0]", f"organism {organism} selected", organism)
+            browser.wait("evod.app.world().selection.id === arguments[0]", f"organism {organism} selected", organism)
             browser.wait_for_text(f"{organism}", "[data-panel=organism]")
 
 

@@ -49,7 +49,7 @@ export class App implements KeyTarget {
         "New world …"));
     this.#worlds = h("main", {class: "worlds", id: "worlds", tabindex: -1});
     this.#add_area();
-    this.#curve = new FitnessCurve((generation) => void this.attempt(() => this.world().show_past(generation)));
+    this.#curve = new FitnessCurve((generation) => void this.attempt(() => this.world().past.show(generation)));
     const hide =
       h("button", {
         type: "button",
@@ -166,17 +166,17 @@ export class App implements KeyTarget {
     const server = this.server, shown = this.world(), {name, island} = shown;
     const names = server.world_names;
     const next = names[(names.indexOf(name) + 1) % names.length];
-    if (shown.forked && server.world(shown.forked)) {
-      this.show_beside(shown.forked, island);
-    } else if (shown.is_own_replay) {
+    if (shown.past.forked && server.world(shown.past.forked)) {
+      this.show_beside(shown.past.forked, island);
+    } else if (shown.past.is_own_replay) {
       this.show_beside(name, island);
     } else if (next !== undefined && next !== name) {
       this.show_beside(next);
-    } else if (shown.past_problem) {
-      this.notify(shown.past_problem);
+    } else if (shown.past.problem) {
+      this.notify(shown.past.problem);
     } else {
       const generation = shown.snapshot?.generation ?? 1, past = this.show_beside(name, island);
-      void this.attempt(() => past.show_past(generation));
+      void this.attempt(() => past.past.show(generation));
     }
   }
 
@@ -189,7 +189,7 @@ export class App implements KeyTarget {
     } else if (!(await this.attempt(act))) {
       return;
     }
-    world.forked = fork;
+    world.past.forked = fork;
     this.notify(`Forked the world ${fork} from this moment`);
     this.show_beside(fork, island);
   };
@@ -204,8 +204,8 @@ export class App implements KeyTarget {
       generation: snapshot.generation,
       tick: snapshot.generation_tick,
       island: snapshot.island_count > 1 ? snapshot.island : null,
-      organism: world.selected,
-      rate: world.has_rate ? world.rate_hz : null,
+      organism: world.selection.id,
+      rate: world.feed.has_rate ? world.feed.rate_hz : null,
     });
   }
 
@@ -240,7 +240,7 @@ export class App implements KeyTarget {
     }
     this.areas.push(area);
     this.#worlds.append(area.element);
-    world.on_change(() => {
+    world.changes.listen(() => {
       if (this.areas.length > 0 && this.world() === world) {
         this.#refresh_column();
       }

@@ -131,20 +131,20 @@ export class Column {
       String(world.island));
     set_text(
       this.#experiment,
-      world.experiment ||
+      world.parameters.experiment ||
         (damaged      ? "This world is damaged and does not run." :
            world.name ? "Loading the experiment …" :
                         "No world is open yet."));
     this.#legend.refresh(world);
     this.#buttons.forEach((button, i) => {
-      const one = world.healthiest[i];
+      const one = world.feed.healthiest[i];
       button.hidden = !one;
       set_text(button, one ? `#${one.id} (${Math.ceil(one.health)})` : "");
-      set_attribute(button, "aria-pressed", String(one !== undefined && one.id === world.selected));
+      set_attribute(button, "aria-pressed", String(one !== undefined && one.id === world.selection.id));
     });
     set_text(
       this.#healthiest_label,
-      world.healthiest.length > 0                   ? "Healthiest now:" :
+      world.feed.healthiest.length > 0                   ? "Healthiest now:" :
         !world.snapshot                             ? "" :
         (world.snapshot.live?.alive_count ?? 0) > 0 ? "Zoom in to see which organisms are the healthiest." :
                                                       "No organism is alive.");
@@ -170,9 +170,9 @@ export class Column {
   }
 
   #select_healthiest(i: number): void {
-    const one = this.#context.world().healthiest[i];
+    const one = this.#context.world().feed.healthiest[i];
     if (one) {
-      this.#context.world().select(one.id);
+      this.#context.world().selection.select(one.id);
     }
   }
 

@@ -49,7 +49,7 @@ export class IslandLegend {
   refresh(world: ViewedWorld): void {
     const scale = scale_of(world);
     const {title, entries} = entries_of(world);
-    this.element.hidden = world.drawing === null || (scale === null && entries.length === 0);
+    this.element.hidden = world.feed.drawing === null || (scale === null && entries.length === 0);
     if (this.element.hidden) {
       return;
     }
@@ -89,7 +89,7 @@ export class IslandLegend {
 }
 
 function scale_of(world: ViewedWorld): Scale|null {
-  const {drawing, look} = world;
+  const {look, feed: {drawing}} = world;
   if (drawing === null) {
     return null;
   }
@@ -107,7 +107,7 @@ function scale_of(world: ViewedWorld): Scale|null {
 }
 
 function entries_of(world: ViewedWorld): {title: string; entries: Entry[]} {
-  const {drawing, look, population} = world;
+  const {look, feed: {drawing}} = world, population = world.population.columns;
   const entries: Entry[] = [];
   let title = "";
   const add = (mark: Entry["mark"], colour: Colour|string, text: string) =>

@@ -42,36 +42,36 @@ const bindings: Binding[] = [
     keys: [" "],
     shown: "Space",
     help: "run, pause, resume",
-    act: (app) => command(app, "pause", () => app.world().pause_or_resume())
+    act: (app) => command(app, "pause", () => app.world().control.pause_or_resume())
   },
-  {keys: ["."], help: "one tick, then pause", act: (app) => command(app, "pause", () => app.world().step(1))},
+  {keys: ["."], help: "one tick, then pause", act: (app) => command(app, "pause", () => app.world().control.step(1))},
   {
     keys: [">", ":"],
     shown: "Shift+.",
     help: "60 ticks, then pause",
-    act: (app) => command(app, "pause", () => app.world().step(60))
+    act: (app) => command(app, "pause", () => app.world().control.step(60))
   },
   {
     keys: ["+", "="],
     shown: "+",
     help: "double the speed",
-    act: (app) => command(app, "set_speed", () => app.world().multiply_speed(2))
+    act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(2))
   },
   {
     keys: ["-", "_"],
     shown: "−",
     help: "halve the speed",
-    act: (app) => command(app, "set_speed", () => app.world().multiply_speed(0.5))
+    act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(0.5))
   },
   {
     keys: ["r"],
     help: "real time",
-    act: (app) => command(app, "set_speed", () => app.world().set_speed({real_time_factor: 1}))
+    act: (app) => command(app, "set_speed", () => app.world().control.set_speed({real_time_factor: 1}))
   },
   {
     keys: ["m"],
     help: "maximum speed; again: the previous speed",
-    act: (app) => command(app, "set_speed", () => app.world().toggle_max_speed())
+    act: (app) => command(app, "set_speed", () => app.world().control.toggle_max_speed())
   },
   {keys: ["PageDown"], shown: "Page Down", help: "next island", act: (app) => move_island(app, 1)},
   {keys: ["PageUp"], shown: "Page Up", help: "previous island", act: (app) => move_island(app, -1)},
@@ -105,7 +105,7 @@ const bindings: Binding[] = [
   {
     keys: ["l"],
     help: "follow the selected organism; again: stop",
-    act: (app) => app.world().set_follow(!app.world().follow)
+    act: (app) => app.world().selection.set_follow(!app.world().selection.follow)
   },
   {keys: ["c"], help: "colour by health, lineage, a gene, nothing", act: (app) => next_colouring(app)},
   {
@@ -238,7 +238,7 @@ async function command(app: KeyTarget, kind: RequestKind, act: () => Promise<voi
   }
   if (why) {
     app.notify(why);
-  } else if (world.is_over && kind !== "set_speed") {
+  } else if (world.control.is_over && kind !== "set_speed") {
     app.notify(
       world.is_replay ? "This is the end of the replay; [ goes back by a generation." :
                         "The run has ended; resetting the world starts it again.");
@@ -265,7 +265,7 @@ async function move_generation(app: KeyTarget, by: number): Promise<void> {
     app.notify("The world is live; P replays its run.");
     return;
   }
-  await world.move_generations(by);
+  await world.past.move_generations(by);
 }
 
 function next_of(shown: "none"|"selected"|"all"): "none"|"selected"|"all" {
@@ -284,6 +284,6 @@ function escape(app: KeyTarget): void {
   if (pane.tool !== "select") {
     pane.set_tool("select");
   } else {
-    app.world().select(null);
+    app.world().selection.select(null);
   }
 }

@@ -102,7 +102,7 @@ export class Pane {
       this.#observer.observe(this.#canvas); // this browser does not know the size in device pixels
     }
     this.#ends.push(
-      this.#worker.on_message((message) => this.#take(message)), this.#world.on_change(() => this.#refresh()));
+      this.#worker.on_message((message) => this.#take(message)), this.#world.changes.listen(() => this.#refresh()));
     if (typeof this.#canvas.transferControlToOffscreen === "function") {
       const offscreen = this.#canvas.transferControlToOffscreen();
       this.#worker.post(
@@ -117,7 +117,7 @@ export class Pane {
   // ---- the tool ----
 
   set_tool(tool: Tool): void {
-    const {organism, selected} = this.#world;
+    const {info: organism, id: selected} = this.#world.selection;
     if (tool === "organism" && organism !== null && selected !== null) {
       this.model = {name: `a copy of organism ${selected}`, genes: [...(organism.genes ?? [])]};
     }
@@ -156,7 +156,7 @@ export class Pane {
     if (why !== "") {
       return why;
     }
-    return tool === "organism" && this.model === null && world.organism === null ?
+    return tool === "organism" && this.model === null && world.selection.info === null ?
       "Select an organism to place copies of it." :
       "";
   }
@@ -165,7 +165,7 @@ export class Pane {
 
   /** Shows the whole island. */
   fit(): void {
-    this.#world.set_follow(false);
+    this.#world.selection.set_follow(false);
     this.#set_camera(null);
   }
 
@@ -201,8 +201,8 @@ export class Pane {
   #pan(by: Point): void {
     const shown = this.#shown();
     if (shown !== null && (by.x !== 0 || by.y !== 0)) {
-      if (this.#world.follow) {
-        this.#world.set_follow(false);
+      if (this.#world.selection.follow) {
+        this.#world.selection.set_follow(false);
       }
       this.#set_camera(panned(shown, this.#size, this.#island!, by));
     }
@@ -219,7 +219,7 @@ export class Pane {
     const shown = this.#shown();
     if (shown !== null) {
       const {screen, zoom} = minimap_place(this.#size, this.#island!);
-      this.#world.set_follow(false);
+      this.#world.selection.set_follow(false);
       this.#set_camera(panned(
         {...shown, x_px: (at.x - screen.left) / zoom, y_px: (at.y - screen.top) / zoom}, this.#size, this.#island!,
         {x: 0, y: 0}));
@@ -239,13 +239,14 @@ export class Pane {
       this.#picks.get(message.id)?.(message);
       this.#picks.delete(message.id);
     } else if (
-      message.kind === "camera" && message.pane === this.#world.pane && this.#world.follow && this.#gesture !== "pan") {
+      message.kind === "camera" && message.pane === this.#world.pane && this.#world.selection.follow &&
+      this.#gesture !== "pan") {
       this.camera = message.camera;
     }
   }
 
   #refresh(): void {
-    const {snapshot, drawing, shown} = this.#world;
+    const {snapshot, feed: {drawing}, shown} = this.#world;
     if (
       snapshot !== null &&
       (this.#island === null || this.#island.width !== snapshot.width_px ||
@@ -377,7 +378,7 @@ export class Pane {
       this.#pressed_at = at;
       this.#pick = this.#what_is_at(at);
     }
-    this.#refresh_hint(this.#world.drawing);
+    this.#refresh_hint(this.#world.feed.drawing);
   }
 
   #move(event: PointerEvent): void {
@@ -440,7 +441,7 @@ export class Pane {
   #hover(at: Point|null): void {
     this.#pointer = at;
     this.#send_pointer();
-    this.#refresh_hint(this.#world.drawing);
+    this.#refresh_hint(this.#world.feed.drawing);
   }
 
   #send_pointer(): void {
@@ -475,20 +476,20 @@ export class Pane {
   async #click(at: Point, pick: Promise<Picked|null>): Promise<void> {
     const now_ms = performance.now();
     const last = this.#last_click;
-    this.#last_click = {at, ms: now_ms, selected: this.#world.selected};
+    this.#last_click = {at, ms: now_ms, selected: this.#world.selection.id};
     if (
       this.tool === "select" && last !== null && now_ms - last.ms < double_click_ms &&
       Math.hypot(at.x - last.at.x, at.y - last.at.y) < 20) {
       this.#last_click = null;
       this.fit();
       await pick; // the first click has selected by now what is there, and a double click selects nothing
-      this.#world.select(last.selected);
+      this.#world.selection.select(last.selected);
       return;
     }
     const picked = await pick;
     if (this.tool === "select") {
       const organism = picked?.organism ?? null;
-      this.#world.select(organism);
+      this.#world.selection.select(organism);
       if (organism !== null) {
         this.options.on_select?.();
       }

@@ -33,7 +33,7 @@ export class PaneArea {
           this.#state, this.#beside),
         h("div", {class: "pane-stage"}, this.pane.element, this.#message), this.timeline.element, this.#foot);
     this.set_beside(false);
-    world.on_change(() => this.#refresh());
+    world.changes.listen(() => this.#refresh());
     this.#refresh();
   }
 
@@ -66,13 +66,13 @@ export class PaneArea {
     set_text(this.#generation, snapshot ? `Generation ${with_separators(snapshot.generation)}` : "");
     this.#replay.hidden = !replay_of;
     set_text(this.#replay, replay_of ? `REPLAY of ${replay_of}` : "");
-    const running = world.state === "RUN_STATE_RUNNING";
-    set_text(this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.speed, running) : world.name);
+    const running = world.control.state === "RUN_STATE_RUNNING";
+    set_text(this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.control.speed, running) : world.name);
     const connected = server.state.phase === "open";
     const state = !connected ? "not connected" :
-      snapshot || info       ? world.at_end ?
+      snapshot || info       ? world.control.at_end ?
                                "end of the replay" :
-                               state_word(world.state, info?.storage ?? server.storage, info?.awaited_fitness !== undefined) :
+                               state_word(world.control.state, info?.storage ?? server.storage, info?.awaited_fitness !== undefined) :
                                "";
     set_text(this.#state, state + (connected && running && info?.slowed ? " slower" : ""));
     set_attribute(this.#state, "data-state", connected && running ? "running" : "stopped");
@@ -81,7 +81,7 @@ export class PaneArea {
       this.#foot.lastElementChild!.remove();
     }
     texts.forEach((text, i) => set_text(this.#foot.children[i] ?? this.#foot.appendChild(h("span", {})), text));
-    set_text(this.#message, world.problem || (snapshot || !world.shown ? "" : "Waiting for the first snapshot …"));
+    set_text(this.#message, world.feed.problem || (snapshot || !world.shown ? "" : "Waiting for the first snapshot …"));
     this.#message.hidden = this.#message.textContent === "";
     set_attribute(
       this.element, "aria-label", world.name ? `World ${world.name}${world.is_replay ? ", replay" : ""}` : "World");

@@ -4,10 +4,10 @@
 //
 // Owner    App; one per pane.
 // Seeking  While a seek runs, only the newest moment that the user asks for is kept.
+import {marks_of} from "../plots/change_marks";
 import {with_separators} from "../texts/numbers";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {marks_of} from "../plots/change_marks";
 
 import {joined_marks, marked_generations, TimeScale, type JoinedMark, type Moment} from "../world/time_scale";
 import type {Message} from "../core/messages";
@@ -78,11 +78,13 @@ export class Timeline {
     };
     this.#first = button("|<", "First tick", () => this.#to_first(), "button square time-end");
     const attempt = (what: () => Promise<unknown>) => (): void => this.#attempt(what);
-    this.#previous = button("<", "Previous generation", attempt(() => world.move_generations(-1)), "button square");
-    this.#play = guarded_button("Play", context.notify, attempt(() => world.pause_or_resume()), "button time-play");
-    this.#next = button(">", "Next generation", attempt(() => world.move_generations(1)), "button square");
+    this.#previous =
+      button("<", "Previous generation", attempt(() => world.past.move_generations(-1)), "button square");
+    this.#play =
+      guarded_button("Play", context.notify, attempt(() => world.control.pause_or_resume()), "button time-play");
+    this.#next = button(">", "Next generation", attempt(() => world.past.move_generations(1)), "button square");
     this.#last = button(">|", "Last tick", () => this.#go({}), "button square time-end");
-    this.#live = guarded_button("Live", context.notify, attempt(() => world.back_to_live()), "button time-live");
+    this.#live = guarded_button("Live", context.notify, attempt(() => world.past.back_to_live()), "button time-live");
     const copy =
       h("button", {
         type: "button",
@@ -116,7 +118,7 @@ export class Timeline {
     });
     observer.observe(this.#line);
     this.#ends.push(() => observer.disconnect(), () => clearTimeout(this.#timer));
-    this.#ends.push(world.on_change(() => this.#refresh()));
+    this.#ends.push(world.changes.listen(() => this.#refresh()));
     this.#refresh();
   }
 
@@ -127,26 +129,26 @@ export class Timeline {
   // ---- what is shown ----
 
   #scale(): TimeScale|null {
-    const range = this.#world.range;
-    return range && new TimeScale(range, (generation) => this.#world.ticks_of(generation));
+    const range = this.#world.past.range;
+    return range && new TimeScale(range, (generation) => this.#world.past.ticks_of(generation));
   }
 
   #refresh(): void {
     const world = this.#world, scale = this.#scale(), snapshot = world.snapshot, is_past = world.is_replay;
     this.element.hidden = !world.name;
     set_attribute(this.element, "data-past", String(is_past));
-    const problem = world.is_own_replay || !scale ? "" : world.past_problem;
+    const problem = world.past.is_own_replay || !scale ? "" : world.past.problem;
     set_text(this.#problem, problem);
     this.#line.hidden = problem !== "";
     this.#refresh_buttons(problem);
     if (!scale || !snapshot) {
       return;
     }
-    const target = world.target;
+    const target = world.past.target;
     const shown_part = is_past ? scale.part_of(snapshot.generation, snapshot.tick) : 1;
     const part = this.#dragged ?? this.#place_of(scale, target) ?? shown_part;
     this.#knob.style.left = this.#fill.style.width = `${(100 * part).toFixed(3)}%`;
-    const ticks = world.ticks_of(snapshot.generation), count = ticks ? ticks.last - ticks.first : 0;
+    const ticks = world.past.ticks_of(snapshot.generation), count = ticks ? ticks.last - ticks.first : 0;
     const generation_text = `generation ${with_separators(snapshot.generation)}`;
     const tick_text = `tick ${with_separators(snapshot.generation_tick)}`;
     const of = is_past && count >= snapshot.generation_tick ? ` of ${with_separators(count)}` : "";
@@ -164,29 +166,29 @@ export class Timeline {
     if (target?.generation === undefined) {
       return null;
     }
-    const ticks = this.#world.ticks_of(target.generation);
+    const ticks = this.#world.past.ticks_of(target.generation);
     return scale.part_of(target.generation, ticks && target.tick !== undefined ? ticks.first + target.tick : undefined);
   }
 
   #refresh_buttons(problem: string): void {
-    const world = this.#world, {snapshot, range} = world, generation = snapshot?.generation ?? 1;
-    const runs = world.is_replay && world.state === "RUN_STATE_RUNNING";
+    const world = this.#world, {snapshot, past: {range}} = world, generation = snapshot?.generation ?? 1;
+    const runs = world.is_replay && world.control.state === "RUN_STATE_RUNNING";
     const why = !world.is_replay ? "The world is live; P replays its run." :
-      world.is_own_replay        ? "" :
+      world.past.is_own_replay   ? "" :
                                    world.server.why_not("seek", world.shown);
     const is_first = range !== null && generation <= range.first_generation && snapshot?.generation_tick === 0;
     const is_last = range !== null && generation >= range.last_generation;
     this.#buttons.hidden = problem !== "";
     this.#live.hidden = problem !== "";
     set_text(this.#play, runs ? "Pause" : "Play");
-    const why_play = why || (world.at_end ? "This is the end of the replay." : "");
+    const why_play = why || (world.control.at_end ? "This is the end of the replay." : "");
     set_allowed(this.#play, why_play, "Plays or pauses the replay (Space).");
     set_allowed(this.#first, problem || (range ? "" : "No world is open."), "Goes to the first tick.");
     const why_previous = problem || (is_first ? "This is the first generation." : "");
     set_allowed(this.#previous, why_previous, "Goes to the previous generation ([).");
     set_allowed(this.#next, why || (is_last ? "This is the last generation." : ""), "Goes to the next generation (]).");
     set_allowed(this.#last, why, "Goes to the last tick.");
-    set_allowed(this.#live, world.is_own_replay ? "" : "The world is live.", "Returns to the live world (P).");
+    set_allowed(this.#live, world.past.is_own_replay ? "" : "The world is live.", "Returns to the live world (P).");
   }
 
   // ---- labels and marks ----
@@ -195,7 +197,8 @@ export class Timeline {
   #rebuild_soon(scale: TimeScale): void {
     const world = this.#world, {first_generation, last_generation} = scale.range;
     const of_run = [world.name, world.island, first_generation, last_generation];
-    const key = [...of_run, world.history.length, world.changes.length, Math.round(this.#width_px)].join(" ");
+    const key =
+      [...of_run, world.history.generations.length, world.history.changes.length, Math.round(this.#width_px)].join(" ");
     if (key === this.#drawn || this.#timer !== 0) {
       return;
     }
@@ -221,7 +224,7 @@ export class Timeline {
       const shown = marks.filter(({x}) => inside(x)).map(({x, text}) => ({part: scale.part_of(x), text}));
       return joined_marks(shown, mark_slots);
     };
-    const changes = marks_at(marks_of(world.changes));
+    const changes = marks_at(marks_of(world.history.changes));
     const are_rare = this.#extinctions.length <= extinctions_share_max * (last_generation - first_generation + 1);
     const extinctions = marks_at(
       (are_rare ? this.#extinctions : [])
@@ -239,7 +242,7 @@ export class Timeline {
 
   /** Adds the extinctions of the generations that have ended since the last call. */
   #scan_extinctions(): void {
-    const {history, island} = this.#world;
+    const {history: {generations: history}, island} = this.#world;
     if (!this.#scanned || this.#scanned.first !== history[0] || this.#scanned.island !== island) {
       this.#extinctions = [];
       this.#scanned = {first: history[0], island, generation: 0};
@@ -265,7 +268,7 @@ export class Timeline {
     }
     const moment = scale.moment_at(at, this.#width_px), near = 4 / Math.max(this.#width_px, 1);
     const texts = this.#texts.filter(({part}) => Math.abs(part - at) <= near).flatMap((mark) => mark.texts);
-    const first = this.#world.ticks_of(moment.generation)?.first;
+    const first = this.#world.past.ticks_of(moment.generation)?.first;
     const is_exact = moment.tick !== undefined && first !== undefined;
     const place = `generation ${with_separators(moment.generation)}`;
     const tick = is_exact ? `, tick ${with_separators(moment.tick! - first)}` : "";
@@ -339,10 +342,10 @@ export class Timeline {
     }
     if (by !== 0) {
       if (world.is_replay || by < 0) {
-        this.#attempt(() => (event.shiftKey ? world.move_ticks(by * key_ticks) : world.move_generations(by)));
+        this.#attempt(() => (event.shiftKey ? world.past.move_ticks(by * key_ticks) : world.past.move_generations(by)));
       }
     } else if (event.key === "PageUp" || event.key === "PageDown") {
-      this.#attempt(() => world.move_generations(event.key === "PageUp" ? page_generations : -page_generations));
+      this.#attempt(() => world.past.move_generations(event.key === "PageUp" ? page_generations : -page_generations));
     } else if (event.key === "Home") {
       this.#to_first();
     } else if (event.key === "End") {
@@ -356,7 +359,7 @@ export class Timeline {
   }
 
   #to_first(): void {
-    const range = this.#world.range;
+    const range = this.#world.past.range;
     if (range) {
       this.#go({generation: range.first_generation});
     }
@@ -379,7 +382,7 @@ export class Timeline {
     while (this.#waiting) {
       const moment = this.#waiting;
       this.#waiting = null;
-      if (!(await this.#context.attempt(() => this.#world.show_nearest(moment)))) {
+      if (!(await this.#context.attempt(() => this.#world.past.show_nearest(moment)))) {
         this.#waiting = null;
       }
     }

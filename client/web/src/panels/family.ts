@@ -81,7 +81,7 @@ export class FamilyPanel implements Panel {
     if (snapshot && this.#root && this.#run_id !== snapshot.run_id) {
       this.#set_root(null);
     }
-    if (!this.#root && snapshot && world.selected !== null) {
+    if (!this.#root && snapshot && world.selection.id !== null) {
       this.#set_root(selection_of(world));
     }
     this.#request(world);
@@ -162,7 +162,7 @@ export class FamilyPanel implements Panel {
       this.#heading,
       root ? `Ancestors of organism ${root.organism} of generation ${with_separators(root.generation)}` :
              "Family tree");
-    const selected = world.selected !== null && world.snapshot ? selection_of(world) : null;
+    const selected = world.selection.id !== null && world.snapshot ? selection_of(world) : null;
     this.#reroot.hidden = !selected || !root || name_key(selected) === name_key(root);
     set_text(this.#reroot, selected ? `Tree of organism ${selected.organism}` : "");
     const width = this.#width.within(280, 1000);
@@ -331,15 +331,15 @@ export class FamilyPanel implements Panel {
     const ancestor = this.#tree!.rows[row]![place]!.ancestor;
     void this.#context.attempt(async () => {
       const world = this.#context.world();
-      await world.show_past(ancestor.generation);
+      await world.past.show(ancestor.generation);
       if (world.island !== ancestor.island) {
         world.choose_island(ancestor.island);
       }
-      world.select(ancestor.organism);
+      world.selection.select(ancestor.organism);
     });
   }
 }
 
 function selection_of(world: ViewedWorld): OrganismName {
-  return {generation: world.snapshot!.generation, island: world.island, organism: world.selected!};
+  return {generation: world.snapshot!.generation, island: world.island, organism: world.selection.id!};
 }

@@ -348,7 +348,7 @@ export class GlassBoxPanel implements Panel {
   }
 
   #go_to_birth(): void {
-    const selected = this.#context.world().selected;
+    const selected = this.#context.world().selection.id;
     if (this.#shown && selected !== null) {
       this.#open_tab("step");
       this.#move(() => this.#stepper.go_to(this.#stepper.begin_of("breeding") + selected));
@@ -381,7 +381,7 @@ export class GlassBoxPanel implements Panel {
       this.#holder.update(run_of(world), world.info?.state ?? "", world.info?.run_until_tick !== undefined);
     this.#held.checked = this.#holder.on;
     if (action !== "none") {
-      void this.#context.attempt(() => action === "step one tick" ? world.step(1) : world.run(1));
+      void this.#context.attempt(() => action === "step one tick" ? world.control.step(1) : world.control.run(1));
     }
   }
 
@@ -475,8 +475,8 @@ export class GlassBoxPanel implements Panel {
     }
     this.#generation.max = String(this.#last || "");
     this.#generation.disabled = this.#last === 0;
-    this.#birth.hidden = !record || world.selected === null || record.key.generation !== this.#newest ||
-      world.selected >= record.descendant_count;
+    this.#birth.hidden = !record || world.selection.id === null || record.key.generation !== this.#newest ||
+      world.selection.id >= record.descendant_count;
     set_text(this.#error, this.#problem ? `${this.#problem}.` : "");
     this.#retry.hidden = this.#problem === "";
     set_text(
@@ -576,7 +576,7 @@ export class GlassBoxPanel implements Panel {
       }
       case "breeding": {
         const descendant = record.descendants[moment.index];
-        const body = genes_of(world.gene_groups, "body", world.gene_names.length).count;
+        const body = genes_of(world.feed.gene_groups, "body", world.gene_names.length).count;
         return [
           this.#descendants(record, moment.index, width), descendants_legend(),
           ...(descendant ? [draw_family(descendant, world.gene_names, body)] : [])
@@ -735,7 +735,7 @@ export class GlassBoxPanel implements Panel {
   /** Statistics of the generation that the shown breeding made; null until that generation has ended. */
   #next_statistics(world: ViewedWorld): Message|null {
     const key = this.#shown?.key;
-    const history = world.history;
+    const history = world.history.generations;
     for (let i = history.length - 1; key && i >= 0 && history[i]!.generation > key.generation; --i) {
       if (history[i]!.generation === key.generation + 1 && (history[i]!.island ?? 0) === key.island) {
         return history[i]!;

@@ -139,7 +139,7 @@ export class NewWorldDialog {
     set_attribute(this.#name, "aria-invalid", null);
     set_attribute(this.#seed, "aria-invalid", null);
     set_text(this.#same_label, `same as ${world.name}`);
-    this.#same.disabled = !world.parameters;
+    this.#same.disabled = !world.parameters.set;
     this.#choices.querySelector("input")!.checked = true;
     this.#choose(presets[0]![0]);
     this.#dialog.open();

@@ -61,15 +61,18 @@ export class OrganismPanel implements Panel {
     h("h3", {}, "The healthiest organisms now"), h("div", {class: "organism-offers"}, ...this.#offers), this.#waiting);
   readonly #heading = h("h2", {});
   readonly #back =
-    h("button",
-      {class: "button", title: "Returns to the live world.", onclick: () => this.#act((world) => world.back_to_live())},
+    h("button", {
+      class: "button",
+      title: "Returns to the live world.",
+      onclick: () => this.#act((world) => world.past.back_to_live())
+    },
       "Back to live");
   readonly #another = h("button", {class: "button", onclick: () => this.#forget()}, "Deselect");
   readonly #family = h("button", {class: "button", onclick: () => this.#open_family()}, "Family tree");
   readonly #fate = h("p", {class: "organism-fate"});
   readonly #action = h("p", {});
   readonly #follow: HTMLInputElement =
-    h("input", {type: "checkbox", onchange: () => this.#context.world().set_follow(this.#follow.checked)});
+    h("input", {type: "checkbox", onchange: () => this.#context.world().selection.set_follow(this.#follow.checked)});
   readonly #follow_row = h("label", {class: "check"}, this.#follow, "keep it centred");
   readonly #eaten = h("p", {});
   readonly #body = h("p", {});
@@ -151,7 +154,7 @@ export class OrganismPanel implements Panel {
     }
     const known = this.#history?.place ?? null;
     const here = known !== null && known.run_id === snapshot.run_id && known.island === world.island;
-    if (world.selected === null) {
+    if (world.selection.id === null) {
       if (!here || known.generation === snapshot.generation) {
         this.#forget_history();
       }
@@ -159,7 +162,7 @@ export class OrganismPanel implements Panel {
       // Around the end of a generation, an answer about the same id may already be about the next one, so the snapshot
       // counts.
       const place: OrganismPlace =
-        {run_id: snapshot.run_id, island: world.island, id: world.selected, generation: snapshot.generation};
+        {run_id: snapshot.run_id, island: world.island, id: world.selection.id, generation: snapshot.generation};
       if (!here || known.id !== place.id || known.generation !== place.generation) {
         this.#forget_history();
         this.#history = new OrganismHistory(place);
@@ -170,15 +173,15 @@ export class OrganismPanel implements Panel {
       return;
     }
     history.ended = snapshot.generation !== history.place.generation;
-    if (world.organism && !history.ended) {
-      history.add_info(world.organism);
+    if (world.selection.info && !history.ended) {
+      history.add_info(world.selection.info);
     }
-    if (world.population) {
-      history.add_population(world.population);
+    if (world.population.columns) {
+      history.add_population(world.population.columns);
     }
     const needs_population = history.ranges.length === 0 && !history.ended;
     if (needs_population && !this.#release_population) {
-      this.#release_population = world.need_population();
+      this.#release_population = world.population.need();
     } else if (!needs_population) {
       this.#release_population?.();
       this.#release_population = null;
@@ -195,7 +198,7 @@ export class OrganismPanel implements Panel {
 
   #forget(): void {
     this.#forget_history();
-    this.#context.world().select(null);
+    this.#context.world().selection.select(null);
     this.#offered_at_ms = -Infinity;
     this.refresh();
     this.#offers[0]!.focus();
@@ -236,9 +239,9 @@ export class OrganismPanel implements Panel {
   #offer(world: ViewedWorld): void {
     set_text(
       this.#waiting,
-      world.healthiest.length > 0 ? "" :
-        world.snapshot            ? "No organism is alive." :
-                                    "Waiting for the first snapshot …");
+      world.feed.healthiest.length > 0 ? "" :
+        world.snapshot                 ? "No organism is alive." :
+                                         "Waiting for the first snapshot …");
     const due_ms = this.#offered_at_ms + offer_interval_ms - performance.now();
     if (due_ms > 0 && this.#offered.length > 0) {
       if (this.#offer_timer === 0) {
@@ -250,9 +253,9 @@ export class OrganismPanel implements Panel {
       return;
     }
     this.#offered_at_ms = performance.now();
-    this.#offered = world.healthiest.slice(0, offered_max).map((organism) => organism.id);
+    this.#offered = world.feed.healthiest.slice(0, offered_max).map((organism) => organism.id);
     this.#offers.forEach((button, i) => {
-      const organism = world.healthiest[i];
+      const organism = world.feed.healthiest[i];
       button.hidden = organism === undefined;
       if (organism) {
         set_text(button, `Organism ${organism.id}, health ${three_digits(organism.health)}`);
@@ -263,7 +266,7 @@ export class OrganismPanel implements Panel {
   #choose_offer(index: number): void {
     const id = this.#offered[index];
     if (id !== undefined) {
-      this.#context.world().select(id);
+      this.#context.world().selection.select(id);
       this.refresh();
     }
   }
@@ -281,7 +284,7 @@ export class OrganismPanel implements Panel {
     set_text(this.#action, acts ? choice_text(info) : "");
     this.#action.hidden = !acts;
     this.#follow_row.hidden = !acts;
-    this.#follow.checked = world.follow;
+    this.#follow.checked = world.selection.follow;
     set_text(
       this.#eaten,
       info ? `eaten: ${with_separators(info.food_eaten ?? 0)} food, ${with_separators(info.poison_eaten ?? 0)} poison` :
@@ -364,7 +367,7 @@ export class OrganismPanel implements Panel {
 
   #show_brain(world: ViewedWorld, history: OrganismHistory): void {
     const genes: number[] = history.info?.genes ?? [];
-    const weights = genes_of(world.gene_groups, "brain", genes.length);
+    const weights = genes_of(world.feed.gene_groups, "brain", genes.length);
     const width = this.#width.within(280, 560);
     this.#brain_part.hidden = !history.brain ||
       !this.#brain.update(history.brain, genes.slice(weights.first, weights.first + weights.count), width);
@@ -373,8 +376,8 @@ export class OrganismPanel implements Panel {
   #show_genes(world: ViewedWorld, history: OrganismHistory): void {
     const names = world.gene_names;
     const genes: number[] = history.info?.genes ?? [];
-    const weights = genes_of(world.gene_groups, "brain", names.length);
-    const free = genes_of(world.gene_groups, "free", names.length);
+    const weights = genes_of(world.feed.gene_groups, "brain", names.length);
+    const free = genes_of(world.feed.gene_groups, "free", names.length);
     const bars =
       names.map((_, gene) => gene)
         .filter(
@@ -446,13 +449,13 @@ export class OrganismPanel implements Panel {
   #go_to(generation: number, island: number, organism: number): void {
     this.#act(async (world) => {
       if (world.snapshot?.generation !== generation || world.island !== island) {
-        await world.show_past(generation);
+        await world.past.show(generation);
         if (world.island !== island) {
           world.choose_island(island);
         }
       }
-      world.select(organism);
-      world.set_follow(true);
+      world.selection.select(organism);
+      world.selection.set_follow(true);
     });
   }
 

@@ -195,8 +195,8 @@ export class ParametersPanel implements Panel {
       this.#run_id = run_id;
       this.#forget();
     }
-    if (world.parameters !== null && world.parameters !== this.#set && this.edits.registry.length > 0) {
-      this.#set = world.parameters;
+    if (world.parameters.set !== null && world.parameters.set !== this.#set && this.edits.registry.length > 0) {
+      this.#set = world.parameters.set;
       this.edits.update_all(this.#set);
       this.#changed = true;
     }
@@ -341,7 +341,7 @@ export class ParametersPanel implements Panel {
     this.#when_number.hidden = kind === "now";
     this.#when_number.value = String(
       kind === "generation" ? Number(world.snapshot?.generation ?? world.info?.generation ?? 1) + 1 :
-                              world.tick + ticks_ahead);
+                              world.feed.tick + ticks_ahead);
     this.touch();
   }
 

@@ -186,7 +186,7 @@ export class PlotsPanel implements Panel {
       this.#drawn = "";
       this.#link.fit();
     }
-    this.#table.set_history(world.history);
+    this.#table.set_history(world.history.generations);
     this.#update_compare();
     this.#update_islands();
     this.#update_population();
@@ -194,7 +194,7 @@ export class PlotsPanel implements Panel {
 
   #subject(): Subject {
     const world = this.#context.world(), island = this.#chosen_island();
-    const marks = [...marks_of(world.changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
+    const marks = [...marks_of(world.history.changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
     return {table: this.#table, island, name: world.name, gene_names: world.gene_names, changes: marks};
   }
 
@@ -221,7 +221,7 @@ export class PlotsPanel implements Panel {
   #update_population(): void {
     const needed = this.#is_visible && this.#quantity === "Genes" && this.#gene !== "" && this.#world !== null;
     if (needed && this.#release_population === null) {
-      this.#release_population = this.#world!.need_population();
+      this.#release_population = this.#world!.population.need();
     } else if (!needed && this.#release_population !== null) {
       this.#release_population();
       this.#release_population = null;
@@ -229,7 +229,7 @@ export class PlotsPanel implements Panel {
   }
 
   async #show_past(generation: number): Promise<void> {
-    await this.#context.attempt(() => this.#context.world().show_past(generation));
+    await this.#context.attempt(() => this.#context.world().past.show(generation));
   }
 
   // ---- choices ----
@@ -335,7 +335,7 @@ export class PlotsPanel implements Panel {
 
   #gene_groups(): string[] {
     const world = this.#context.world();
-    return world.gene_groups.length === world.gene_names.length ? world.gene_groups : [];
+    return world.feed.gene_groups.length === world.gene_names.length ? world.feed.gene_groups : [];
   }
 
   /** Fills the choices of genes. Returns the genes of the chosen group, and those that are plotted together. */
@@ -390,18 +390,18 @@ export class PlotsPanel implements Panel {
                                                0;
     const window = Number(this.#smooth.value);
     const description = [
-      this.#table.revision, world.changes.length, world.history_complete, other_revision, quantity, this.#island.value,
-      this.#gene, this.#group.value, window, world.gene_names.length
+      this.#table.revision, world.history.changes.length, world.history.is_complete, other_revision, quantity,
+      this.#island.value, this.#gene, this.#group.value, window, world.gene_names.length
     ].join(" ");
     if (description !== this.#drawn) {
       this.#drawn = description;
       const together = of_genes ? this.#update_genes().together : [];
       const content = figure_of(quantity, this.#subject(), this.#other(), together, of_genes ? this.#gene : "", window);
       content.note_end = "A click shows this generation in a replay.";
-      content.empty = world.history_complete ? quantity === "Selection" && this.#table.generation_count > 0 ?
-                                               "Known from the second generation on" :
-                                               "No generation has ended yet" :
-                                               "…";
+      content.empty = world.history.is_complete ? quantity === "Selection" && this.#table.generation_count > 0 ?
+                                                  "Known from the second generation on" :
+                                                  "No generation has ended yet" :
+                                                  "…";
       this.#plot.set_content(content);
       set_text(
         this.#explanation,
@@ -425,7 +425,7 @@ export class PlotsPanel implements Panel {
   }
 
   #build_histogram(): void {
-    const world = this.#context.world(), {population} = world;
+    const world = this.#context.world(), {columns: population} = world.population;
     const shown = this.#quantity === "Genes" && this.#gene !== "";
     this.#histogram_part.hidden = !shown;
     if (!shown || (population === this.#histogram_drawn && this.#gene === this.#histogram_gene)) {
@@ -455,7 +455,7 @@ export class PlotsPanel implements Panel {
   #save_csv(): void {
     const world = this.#context.world();
     save_file(
-      new Blob([history_csv(world.history, world.gene_names)], {type: "text/csv"}),
+      new Blob([history_csv(world.history.generations, world.gene_names)], {type: "text/csv"}),
       `${this.#file_name("history")}.csv`);
   }
 

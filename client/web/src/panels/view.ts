@@ -39,7 +39,7 @@ export class ViewPanel implements Panel {
     interpolate: this.#check("interpolate"),
   };
   readonly #follow: HTMLInputElement =
-    h("input", {type: "checkbox", onchange: () => this.#context.world().set_follow(this.#follow.checked)});
+    h("input", {type: "checkbox", onchange: () => this.#context.world().selection.set_follow(this.#follow.checked)});
   readonly #follow_row = h("label", {class: "check"}, this.#follow, "keep the selected organism centred (L)");
   readonly #follow_hint = h("p", {class: "hint"}, "Click an organism to select it.");
   readonly #lineage_hint = h(
@@ -91,9 +91,9 @@ export class ViewPanel implements Panel {
       this.#checks[name].checked = look[name];
     }
     this.#lineage_hint.hidden = look.colour_by !== "lineage";
-    this.#follow_row.hidden = world.selected === null;
-    this.#follow_hint.hidden = world.selected !== null;
-    this.#follow.checked = world.follow;
+    this.#follow_row.hidden = world.selection.id === null;
+    this.#follow_hint.hidden = world.selection.id !== null;
+    this.#follow.checked = world.selection.follow;
   }
 
   get #look(): Look {

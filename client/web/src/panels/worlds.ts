@@ -102,7 +102,7 @@ export class WorldsPanel implements Panel {
           chosen: info.name === world.name,
           act: () => this.#context.world().show(info.name),
           cells: [
-            state_word(live ? world.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
+            state_word(live ? world.control.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
             with_separators(live ? live.generation : info.generation ?? 0),
             with_separators(live ? live.tick : info.tick ?? 0),
             speed_text(info.speed) + (info.slowed ? " (slower)" : "")
@@ -203,7 +203,7 @@ export class WorldsPanel implements Panel {
     set_text(
       this.#fork_from,
       `A copy of ${world.shown} at generation ${with_separators(world.snapshot.generation)}, tick ${
-        with_separators(world.tick)}. It waits until it is run.`);
+        with_separators(world.feed.tick)}. It waits until it is run.`);
     set_text(this.#fork_error, "");
     this.#fork_name.value = unused_name(world.name, this.#context.server.world_names);
     this.#confirm.hidden = true;
