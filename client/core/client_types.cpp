@@ -59,14 +59,21 @@ std::string to_text(const Endpoint& endpoint) {
     return (bracketed ? "[" + endpoint.host + "]" : endpoint.host) + ":" + std::to_string(endpoint.port);
 }
 
-std::string to_text(const evod::v1::Status& status) {
+std::string to_text(const evod::v1::Status& status, const std::function<std::string(std::string_view path)>& name_of) {
     std::string text = !status.message().empty()               ? status.message()
                        : evod::v1::Code_IsValid(status.code()) ? evod::v1::Code_Name(status.code())
                                                                : "unknown code " + std::to_string(status.code());
     for (const auto& violation : status.violations()) {
-        text += "\n  " + violation.field() + ": got " + violation.got() + ", allowed " + violation.allowed();
+        const std::size_t at = violation.field().empty() ? std::string::npos : text.find(violation.field() + ": ");
+        if (name_of && at != std::string::npos) {
+            text.replace(at, violation.field().size(), name_of(violation.field()));
+        }
     }
     return text;
+}
+
+std::string to_text(const evod::v1::Event& event) {
+    return event.text().empty() ? event.ShortDebugString() : event.text();
 }
 
 std::string to_text(const evod::v1::AwaitedFitness& awaited, std::uint32_t island_count) {

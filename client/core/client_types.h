@@ -63,8 +63,20 @@ inline bool worlds_wait(const evod::v1::Storage& storage) {
 /// Returns how many islands of a world that waits for fitness have been rated: "0 of 2 islands rated".
 std::string to_text(const evod::v1::AwaitedFitness& awaited, std::uint32_t island_count);
 
-/// Returns the message for people, followed by one line for each violation. Programs read the code and the reason.
-std::string to_text(const evod::v1::Status& status);
+/// Returns the message for people: a sentence, then lines about fields. Programs read the code, the reason and the fields.
+///
+/// name_of  the client's own name for the path of a field, such as "set_parameters.mutation_chance"; empty: the path.
+std::string to_text(const evod::v1::Status& status,
+                    const std::function<std::string(std::string_view path)>& name_of = {});
+
+/// Returns the sentence about an event. For an event of a server that sends none, or of this client itself, returns the
+/// fields.
+std::string to_text(const evod::v1::Event& event);
+
+/// Returns the problem with the server's run files in one sentence; empty if there is none.
+inline const std::string& to_text(const evod::v1::Storage& storage) {
+    return storage.text().empty() ? storage.reason() : storage.text();
+}
 
 // ---- the connection --------------------------------------------------------------------------------------------
 

@@ -201,19 +201,6 @@ std::string colored_state_of(const v1::WorldInfo& world) {
     return in_color(state, state == "running" ? Color::Green : Color::Yellow);
 }
 
-std::string storage_problem(const v1::Storage& storage) {
-    switch (storage.state()) {
-    case v1::STORAGE_STATE_FAILING:
-        return "commands are refused: " + storage.reason();
-    case v1::STORAGE_STATE_STALLED:
-        return "worlds wait for the disk, commands are refused: " + storage.reason();
-    case v1::STORAGE_STATE_BEHIND:
-        return "worlds wait for the disk: " + storage.reason();
-    default:
-        return "";
-    }
-}
-
 std::string durability_warning(const v1::Welcome& welcome) {
     switch (welcome.durability()) {
     case v1::DURABILITY_NONE:

@@ -90,9 +90,6 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
 std::string state_of(const v1::WorldInfo& world);
 /// Returns the state in a colour: green while the world runs, yellow if it waits, red if it is extinct.
 std::string colored_state_of(const v1::WorldInfo& world);
-/// Returns a problem of the storage in words: "commands are refused: the disk is full", "worlds wait for the disk: …".
-/// Empty if there is no problem.
-std::string storage_problem(const v1::Storage& storage);
 /// Returns a warning if acknowledged commands may be lost, for example when the machine fails; empty otherwise.
 std::string durability_warning(const v1::Welcome& welcome);
 /// Returns the requested speed, and whether the world is slower than requested: "2x", "max", "100x (slower)".

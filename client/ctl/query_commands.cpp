@@ -72,7 +72,7 @@ void status(const Common& common) {
             text += "it shows a stored run, which it does not change\n";
         }
         for (const std::string& line : {only_replays ? std::string{} : durability_warning(caller.welcome()),
-                                        storage_problem(caller.welcome().storage())}) {
+                                        core::to_text(caller.welcome().storage())}) {
             text += line.empty() ? "" : in_color(line, Color::Yellow) + "\n";
         }
         return text + reasons + (rows.empty() ? "no worlds: create one with `evoctl create NAME`\n" : table.to_text());
@@ -188,7 +188,7 @@ void statistics(const Common& common, const MomentOptions& moment) {
     const v1::Statistics statistics = caller.call(std::move(request)).statistics();
     print(common, statistics, [&] {
         std::string text = (moment.is_replay() ? replay_sentence : sentence)(statistics.world()) + "\n";
-        if (const std::string trouble = storage_problem(statistics.world().storage()); !trouble.empty()) {
+        if (const std::string trouble = core::to_text(statistics.world().storage()); !trouble.empty()) {
             text += trouble + "\n";
         }
         if (statistics.live_size() > 0) {

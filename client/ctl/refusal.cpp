@@ -1,7 +1,7 @@
 #include "client/ctl/refusal.h"
 
+#include "client/core/client_types.h"
 #include "proto/command_line/command.h"
-#include "proto/text/violation_text.h"
 
 #include <algorithm>
 #include <array>
@@ -72,13 +72,7 @@ std::string name_of(std::string_view path, const command_line::Command* command)
 } // namespace
 
 std::string refusal_text(const v1::Status& status, const command_line::Command* command) {
-    std::string text;
-    for (const v1::Violation& violation : status.violations()) {
-        text += (text.empty() ? "" : "\n") + name_of(violation.field(), command) + ": " +
-                text::violation_text(violation.got(), violation.allowed());
-    }
-    // If the request is invalid, the message repeats the violations; otherwise it says what was looked for.
-    return status.code() == v1::CODE_INVALID_ARGUMENT ? text : text + " (" + status.message() + ")";
+    return core::to_text(status, [command](std::string_view path) { return name_of(path, command); });
 }
 
 } // namespace evod::ctl

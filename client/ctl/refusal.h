@@ -11,8 +11,8 @@ class Command;
 
 namespace evod::ctl {
 
-/// Returns a line for each violation: "mutation_chance: got 2, allowed 0 to 1". The names of fields are replaced by those
-/// of options and values that the user typed. The status must contain a violation.
+/// Returns the message of the server, in which the names of fields are replaced by those of options and values that the
+/// user typed.
 ///
 /// command  the subcommand that the user called; nullptr: unknown.
 std::string refusal_text(const v1::Status& status, const command_line::Command* command);

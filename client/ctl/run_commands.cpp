@@ -214,7 +214,7 @@ class Progress {
 
     /// Prints the state of the storage if it differs from the state printed before.
     void show(const v1::Storage& storage) {
-        const std::string trouble = storage_problem(storage);
+        const std::string trouble = core::to_text(storage);
         if (trouble != trouble_) {
             std::cerr << (live_ && shown_ ? "\n" : "")
                       << (trouble.empty() ? "run files can be written again" : visible(trouble)) << '\n'

@@ -1,5 +1,5 @@
 // Commands that follow a world: watch, events.
-#include "client/core/actor.h"
+#include "client/core/client_types.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/text.h"
@@ -118,7 +118,7 @@ class WatchDisplay {
 
     /// Prints the state of the storage on stderr, because programs read stdout. It explains why no generation ends.
     void print_storage(const v1::Storage& storage) {
-        const std::string trouble = storage_problem(storage);
+        const std::string trouble = core::to_text(storage);
         if (!redraw_ && trouble != trouble_) {
             std::cerr << (trouble.empty() ? "run files can be written again" : visible(trouble)) << '\n';
         }
@@ -147,12 +147,11 @@ class WatchDisplay {
             }
         } else if (event.has_run_terminated()) {
             look();
-            end(world_.name() + " has ended: " + state_of(world_));
+            end(world_.name() + ": " + core::to_text(event));
         } else if (event.has_world_deleted()) {
-            end(world_.name() + " was deleted by " + core::to_text(event.world_deleted().by()));
+            end(core::to_text(event));
         } else if (event.has_world_damaged()) {
-            throw Stop{ExitCode::Refused,
-                       "the world " + world_.name() + " does not run: " + event.world_damaged().reason()};
+            throw Stop{ExitCode::Refused, core::to_text(event)};
         } else if (event.has_world_reset()) {
             lines_.clear();
         }
@@ -182,7 +181,7 @@ class WatchDisplay {
 
     void draw() {
         std::string text = sentence(world_) + ", " + fixed(world_.ticks_per_s(), 0) + " ticks/s\n";
-        const std::string trouble = storage_problem(world_.storage());
+        const std::string trouble = core::to_text(world_.storage());
         text += (trouble.empty() ? "" : trouble + "\n") + "\n";
         std::uint64_t alive = 0, born = 0, starved = 0, poisoned = 0;
         double health = 0;
@@ -252,102 +251,9 @@ class WatchDisplay {
 
 // ---- events ----------------------------------------------------------------------------------------------------
 
-std::string outcome_of(v1::Outcome outcome) {
-    v1::WorldInfo world;
-    world.set_state(v1::RUN_STATE_TERMINATED);
-    world.set_outcome(outcome);
-    return state_of(world);
-}
-
-std::string text_of(const v1::Event& event) {
-    const std::string where =
-        (event.world().empty() ? "server" : event.world()) + " tick " + std::to_string(event.tick()) + ": ";
-    switch (event.kind_case()) {
-    case v1::Event::kGenerationFinished:
-        return where + text_of(line_of(event.generation_finished().statistics()));
-    case v1::Event::kParametersChanged: {
-        const auto& changed = event.parameters_changed();
-        std::string text = where + core::to_text(changed.by()) + " set";
-        for (const auto& state : changed.changed()) {
-            text += " " + state.name() + "=" + to_text(state.has_pending() ? state.pending() : state.value());
-        }
-        return text + ", revision " + std::to_string(changed.revision());
-    }
-    case v1::Event::kChangePlanned:
-    case v1::Event::kChangeCancelled: {
-        const bool planned = event.has_change_planned();
-        const auto& change = planned ? event.change_planned().change() : event.change_cancelled().change();
-        std::string text = where + core::to_text(planned ? change.by() : event.change_cancelled().by()) +
-                           (planned ? " planned change " : " cancelled change ") + std::to_string(change.id()) +
-                           (change.has_tick() ? " after tick " + std::to_string(change.tick())
-                                              : " from generation " + std::to_string(change.generation())) +
-                           ":";
-        for (const auto& assignment : change.parameters()) {
-            text += " " + assignment.name() + "=" + to_text(assignment.value());
-        }
-        return text;
-    }
-    case v1::Event::kChangeDropped: {
-        const auto& dropped = event.change_dropped();
-        std::string text = where + "dropped a change planned by " + core::to_text(dropped.by()) + ":";
-        for (const auto& name : dropped.name()) {
-            text += " " + name;
-        }
-        for (const auto& violation : dropped.violations()) {
-            text += "; " + violation.field() + ": got " + violation.got() + ", allowed " + violation.allowed();
-        }
-        return text;
-    }
-    case v1::Event::kRunControlChanged:
-        return where +
-               (event.run_control_changed().by().kind() == v1::ACTOR_KIND_GOAL
-                    ? "goal reached"
-                    : core::to_text(event.run_control_changed().by())) +
-               "; " + sentence(event.run_control_changed().world());
-    case v1::Event::kFitnessAwaited:
-        return where + "generation " + std::to_string(event.fitness_awaited().generation()) +
-               " waits for fitness from a client";
-    case v1::Event::kFitnessSet: {
-        const auto& set = event.fitness_set();
-        return where + core::to_text(set.by()) + " rated " + std::to_string(set.organism_count()) +
-               " organisms on island " + std::to_string(set.island()) + ", generation " +
-               std::to_string(set.generation());
-    }
-    case v1::Event::kMigration: {
-        std::uint64_t migrants = 0;
-        for (const auto& edge : event.migration().edges()) {
-            migrants += edge.migrant_count();
-        }
-        return where + std::to_string(migrants) + " migrated into generation " +
-               std::to_string(event.migration().generation());
-    }
-    case v1::Event::kExtinction:
-        return where + "all organisms on island " + std::to_string(event.extinction().island()) +
-               " are dead, generation " + std::to_string(event.extinction().generation());
-    case v1::Event::kRunTerminated:
-        return where + outcome_of(event.run_terminated().outcome());
-    case v1::Event::kWorldCreated:
-        return where + "created by " + core::to_text(event.world_created().by()) + ", seed " +
-               std::to_string(event.world_created().world().seed());
-    case v1::Event::kWorldReset:
-        return where + "reset by " + core::to_text(event.world_reset().by()) + ", seed " +
-               std::to_string(event.world_reset().world().seed());
-    case v1::Event::kWorldDeleted:
-        return where + "deleted by " + core::to_text(event.world_deleted().by());
-    case v1::Event::kWorldDamaged:
-        return event.world() + " does not run: " + event.world_damaged().reason();
-    case v1::Event::kServerGoingAway:
-        return "the server is shutting down";
-    case v1::Event::kStorageChanged: {
-        const std::string trouble = storage_problem(event.storage_changed().storage());
-        return (event.world().empty() ? "" : event.world() + ": ") +
-               (trouble.empty() ? "run files can be written again" : trouble);
-    }
-    case v1::Event::kEventsDropped:
-        return std::to_string(event.events_dropped().dropped_count()) + " events were dropped: too many at once";
-    default:
-        return where + "an event unknown to this evoctl, which is older than the server";
-    }
+std::string line_of(const v1::Event& event) {
+    return (event.world().empty() ? "server" : event.world() + " tick " + std::to_string(event.tick())) + ": " +
+           core::to_text(event);
 }
 
 void follow_events(const Common& common, std::optional<std::uint64_t> count) {
@@ -362,7 +268,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
         throw Stop{ExitCode::NoConnection, answer.error().what};
     }
     caller.require_subscribed(handle);
-    if (const std::string trouble = storage_problem(caller.storage()); !trouble.empty()) {
+    if (const std::string trouble = core::to_text(caller.storage()); !trouble.empty()) {
         std::cerr << visible(trouble) << '\n'; // the problem began before this command
     }
     ConnectionReporter reporter;
@@ -370,7 +276,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
     std::uint64_t seen = 0;
     for (bool gone = false; !gone && !interrupted() && (!count || seen < *count);) {
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
-            std::cout << (common.json ? to_json(*event, false) : visible(text_of(*event)) + "\n") << std::flush;
+            std::cout << (common.json ? to_json(*event, false) : visible(line_of(*event)) + "\n") << std::flush;
             ++seen;
             gone = subscription.has_world() && (event->has_world_deleted() || event->has_world_damaged());
         }

@@ -1,5 +1,5 @@
-"""Builds the package. Generates the message classes of evod.v1 (with protoc), evod/results.py, evod/lab.py,
-evod/experiments.py and evod/version.py.
+"""Builds the package. Generates the message classes of evod.v1 (with protoc), evod/results.py, evod/version.py, and
+the synchronous modules of evod/aio.
 
 The environment variable PROTOC contains the path of protoc; by default protoc is searched in PATH.
 """
@@ -18,7 +18,8 @@ here = pathlib.Path(__file__).resolve().parent
 sources = here.parent.parent
 
 
-SYNCHRONOUS = ("experiments.py", "lab.py")  # modules of evod.aio from which synchronous modules are generated
+# Modules of evod.aio from which synchronous modules are generated.
+SYNCHRONOUS = ("connection.py", "experiments.py", "lab.py", "streams.py", "world_queries.py")
 
 
 class BuildWithGenerated(build_py):
@@ -46,10 +47,12 @@ def protoc(*options: str) -> None:
     """Runs protoc for all .proto files of evod."""
     protos = sorted((sources / "proto" / "evod" / "v1").glob("*.proto"))
     if not protos:
-        raise SystemExit(f"there are no .proto files in {sources / 'proto'}: build this package inside evod's source tree")
+        raise SystemExit(f"there are no .proto files in {sources / 'proto'}: build this package inside evod's source "
+                         "tree")
     program = os.environ.get("PROTOC") or shutil.which("protoc")
     if not program:
-        raise SystemExit("protoc is missing: install protobuf-compiler, or set the environment variable PROTOC to its path")
+        raise SystemExit("protoc is missing: install protobuf-compiler, or set the environment variable PROTOC to its "
+                         "path")
     subprocess.run([program, f"--proto_path={sources / 'proto'}", *options, *map(str, protos)], check=True)
 
 

@@ -26,7 +26,8 @@ BYTES_MAX = 200_000
 
 
 def evoctl(*arguments, check=True):
-    return subprocess.run([BIN / "evoctl", "--server", f"127.0.0.1:{PORT}", *arguments], check=check, stdout=subprocess.DEVNULL,
+    return subprocess.run([BIN / "evoctl", "--server", f"127.0.0.1:{PORT}", *arguments], check=check,
+                          stdout=subprocess.DEVNULL,
                           stderr=None if check else subprocess.DEVNULL).returncode == 0
 
 
@@ -78,8 +79,10 @@ def show_breeding(page):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        server = subprocess.Popen([BIN / "evod", "--port", str(PORT), "--web", "--http-port", str(HTTP_PORT), "--seed", "7",
-                                   "--speed", "max", "--data", folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        server = subprocess.Popen([BIN / "evod", "--port", str(PORT), "--web", "--http-port", str(HTTP_PORT), "--seed",
+                                   "7",
+                                   "--speed", "max", "--data", folder], stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL)
         try:
             waiting.until(lambda: evoctl("status", check=False), "the server")
             evoctl("run", "14", "--wait")

@@ -99,7 +99,7 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
         const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
         return refusal(RefusalCode::ResourceExhausted,
                        "a login from this address failed: try again in " + std::to_string(wait.count()) + " s",
-                       base::Reason::LoginTooSoon);
+                       base::Reason::LoginTooSoon, {{"retry_after_s", std::to_string(wait.count())}});
     }
     fail(address, now);
     return refusal(RefusalCode::Unauthenticated,

@@ -6,6 +6,7 @@
 
 #include <boost/system/result.hpp>
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -102,17 +103,38 @@ struct Violation {
 /// What Violation::got contains if `field` is a name that does not exist.
 using text::unknown_name;
 
+/// A value in the message of a refusal, for programs. evod.v1.Argument lists the names.
+struct Argument {
+    std::string name, value;
+};
+
 /// The error that is returned for a refused request. A refused request has changed nothing.
 struct Refusal {
     RefusalCode code = RefusalCode::InvalidArgument;
     std::string message; // one sentence
     std::vector<Violation> violations;
     Reason reason = Reason::Unspecified;
+    std::vector<Argument> arguments = {};
 };
 
 /// Creates a refusal that names no field.
-inline Refusal refusal(RefusalCode code, std::string message, Reason reason = Reason::Unspecified) {
-    return {.code = code, .message = std::move(message), .violations = {}, .reason = reason};
+inline Refusal refusal(RefusalCode code, std::string message, Reason reason = Reason::Unspecified,
+                       std::vector<Argument> arguments = {}) {
+    return {.code = code,
+            .message = std::move(message),
+            .violations = {},
+            .reason = reason,
+            .arguments = std::move(arguments)};
+}
+
+/// Creates the refusal of a request that exceeds a limit.
+///
+/// limit    name in the table of limits: "worlds_max".
+/// held     number that the client, its user or all clients hold already.
+inline Refusal limit_refusal(std::string message, Reason reason, std::string limit, std::size_t held,
+                             std::size_t allowed) {
+    return refusal(RefusalCode::ResourceExhausted, std::move(message), reason,
+                   {{"limit", std::move(limit)}, {"held", std::to_string(held)}, {"allowed", std::to_string(allowed)}});
 }
 
 /// Returns the refusal as text: the message, then one line per violation.

@@ -24,7 +24,17 @@ const char* effect_text(base::Effect effect) {
     return "";
 }
 
-/// A Markdown table with one row per parameter.
+std::string most_used_names() {
+    std::string names;
+    for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
+        if (description.is_most_used) {
+            names += (names.empty() ? "`" : ", `") + std::string{description.name} + "`";
+        }
+    }
+    return names;
+}
+
+/// A Markdown table for each topic, with one row per parameter.
 std::string parameter_list() {
     std::string text =
         "# Parameters\n\n"
@@ -38,8 +48,15 @@ std::string parameter_list() {
         "reset. Each value holds from the first tick of its generation. A breeding parameter that is listed for\n"
         "generation N therefore first affects the breeding of generation N + 1. Before the first listed\n"
         "generation, the parameter has its default value.\n\n"
-        "| name | default | allowed | unit | takes effect | meaning |\n|---|---|---|---|---|---|\n";
+        "Users change these parameters most often: " +
+        most_used_names() + ".\n";
+    std::string_view topic;
     for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
+        if (description.topic != topic) {
+            topic = description.topic;
+            text += "\n## " + std::string{topic} +
+                    "\n\n| name | default | allowed | unit | takes effect | meaning |\n|---|---|---|---|---|---|\n";
+        }
         text += "| `" + std::string{description.name} + "` | " + parameters::to_text(description.default_value()) +
                 " | " + description.allowed() + " | " + std::string{description.unit} + " | " +
                 effect_text(description.effect) + " | " + std::string{description.help} + " |\n";

@@ -1,6 +1,7 @@
 // The parameters of the genetic algorithm, one line each. Macros generate the struct and the registry from these lines.
 //
-// A line contains: name, default, minimum, maximum, unit, when a change takes effect, one sentence of help.
+// A line contains: name, default, minimum, maximum, unit, when a change takes effect, one sentence of help. A TOPIC is the
+// heading under which people see the parameters that follow it.
 #pragma once
 
 #include "server/base/parameter.h"
@@ -37,7 +38,8 @@ EVOD_CHOICE_NAMES(evod::evolution::Controller, "rules", "network")
 EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
 
 // clang-format off
-#define EVOD_EVOLUTION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                           \
+#define EVOD_EVOLUTION_PARAMETERS(TOPIC, REAL, COUNT, FLAG, CHOICE)                                                    \
+    TOPIC("Population")                                                                                                \
     COUNT(population_size, 50, 1, 4'000'000, "organisms", NextGeneration, "Organisms on each island.")                 \
     CHOICE(population_model, PopulationModel, Hybrid, NextTick, "How a generation replaces the previous one: hybrid keeps the selected organisms and adds their children, generational replaces all organisms except the elite, steady_state replaces only the worst organisms.") \
     REAL(survivors, 0.5, 0, 1, "share", NextTick, "Population model hybrid: share of the population that survives and breeds. Other population models with truncation selection: share that may breed. At least one organism.") \
@@ -45,6 +47,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     COUNT(elite_count, 0, 0, 4'000'000, "organisms", NextTick, "Number of best organisms that survive unchanged.")     \
     FLAG(mutate_survivors, false, NextTick, "Whether survivors are mutated too; the elite never are.")                 \
     FLAG(shuffle_fitness, false, NextTick, "Whether fitness values are shuffled among an island's organisms before migration and selection: a control for experiments, in which selection is as strong as before but favours no gene. Statistics and termination criteria use the true fitness.") \
+    TOPIC("Selection")                                                                                                 \
     CHOICE(fitness_scaling, FitnessScaling, None, NextTick, "How fitness is scaled before roulette and stochastic_universal selection.") \
     REAL(ranking_pressure, 1.5, 1, 2, "", NextTick, "Expected number of copies of the best organism under linear_ranking; 1 exerts no selection pressure.") \
     REAL(ranking_decay, 0.95, 0.01, 1, "", NextTick, "Weight of each rank relative to the next better one under exponential_ranking.") \
@@ -52,10 +55,12 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     COUNT(tournament_size, 3, 1, 1'000'000, "organisms", NextTick, "Number of contestants per tournament; without tournament_replacement, at most population_size.") \
     COUNT(tournament_winners, 1, 1, 1'000'000, "organisms", NextTick, "Number of winners per tournament; at most tournament_size.") \
     FLAG(tournament_replacement, true, NextTick, "Whether an organism can be drawn more than once into the same tournament.") \
+    TOPIC("Crossover")                                                                                                 \
     CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed: uniform, single_point and multi_point give each gene of one parent to one child and that of the other parent to the other child; blend gives the children complementary weighted means of the parents.")                   \
     REAL(crossover_chance, 1, 0, 1, "chance", NextTick, "Chance that the genes of a pair are mixed; otherwise the children are copies of the parents.") \
     COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Number of cut points of multi_point crossover.")                                     \
     CHOICE(mutate_group, GeneGroup, All, NextTick, "Which genes mutate: all, those of the body, the weights of the brain, or the free genes. Crossover mixes all genes.") \
+    TOPIC("Mutation")                                                                                                  \
     CHOICE(rearranging, OrderMutationMethod, None, NextTick, "Order mutation: how the values of genes are exchanged within a chromosome.") \
     REAL(rearrange_chance, 0.1, 0, 1, "chance", NextTick, "Chance per chromosome of an order mutation.")               \
     CHOICE(creep, Creep, Uniform, NextTick, "Distribution of the step that a creep mutation adds to a gene: uniform within ± the step, or gaussian with the step as standard deviation. The step of a gene of the body is mutation_step, that of a weight of the brain is brain_mutation_step, and that of a free gene is free_mutation_step.") \
@@ -68,6 +73,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     REAL(scale_range, 0.1, 0, 1, "", NextTick, "Range of the factor of a scale mutation: uniform between 1 − scale_range and 1 + scale_range.") \
     REAL(bit_flip_chance, 0, 0, 1, "chance", NextTick, "Chance per bit of a flip in a gene's fixed-point binary code; 0 means off.") \
     COUNT(bit_flip_bits, 16, 1, 24, "bits", NextTick, "Number of bits of a gene's binary code, whose values are evenly spaced between the gene's bounds.") \
+    TOPIC("Bounds of genes")                                                                                           \
     REAL(initial_gene_min, 80, 0, 10'000, "gene units", Reset, "Lowest value of a gene of the body in the first generation.") \
     REAL(initial_gene_max, 120, 0, 10'000, "gene units", Reset, "Highest value of a gene of the body in the first generation.") \
     REAL(normal_speed_min, 20, 0, 10'000, "gene units", NextTick, "Lower bound of the gene normal_speed.")             \
@@ -97,11 +103,13 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     REAL(brain_weight_limit, 4, 0.001, 1000, "", NextTick, "Weights of a network stay within ± this value.")           \
     REAL(brain_weight_initial, 1, 0, 1000, "", Reset, "Weights of the first generation are uniform within ± this value.") \
     CHOICE(locomotion, Locomotion, Newtonian, Reset, "What the outputs of a network do: newtonian, a force along the heading and a turn rate; bodies have mass and collide; kinematic, a change of speed and a turn rate; bodies have no mass and pass through each other.") \
+    TOPIC("End of the run")                                                                                            \
     COUNT(generation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations; 0 means no limit.") \
     FLAG(stop_at_target_fitness, false, NextTick, "Whether the run ends when an organism reaches target_fitness.")     \
     REAL(target_fitness, 500, -1e12, 1e12, "fitness", NextTick, "Fitness at which the run ends if stop_at_target_fitness is on.") \
     COUNT(stagnation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations without a new best fitness; 0 means never.") \
     FLAG(stop_at_extinction, false, NextTick, "Whether the run ends with a generation in which every organism died.")  \
+    TOPIC("Migration")                                                                                                 \
     CHOICE(migration, Topology, None, NextTick, "Which islands exchange migrants.")                                    \
     COUNT(migration_epoch, 10, 1, count_max, "generations", NextTick, "Number of generations from one migration to the next.")               \
     COUNT(migrant_count, 1, 1, 4'000'000, "organisms", NextTick, "Number of organisms that an island copies to each destination island; if more arrive than an island has organisms, its places are shared evenly among the sending islands.") \
@@ -113,6 +121,7 @@ namespace evod::evolution {
 
 using base::count_max;
 
+#define EVOD_NO_FIELD(topic)
 #define EVOD_REAL_FIELD(name, value, least, greatest, unit, effect, help) double name = value;
 #define EVOD_COUNT_FIELD(name, value, least, greatest, unit, effect, help) std::uint32_t name = value;
 #define EVOD_FLAG_FIELD(name, value, effect, help) bool name = value;
@@ -121,7 +130,7 @@ using base::count_max;
 /// Every parameter of the genetic algorithm. Each is within its range, and no lower bound of a gene is above its upper
 /// bound.
 struct Parameters {
-    EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
+    EVOD_EVOLUTION_PARAMETERS(EVOD_NO_FIELD, EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
 };
 
 } // namespace evod::evolution

@@ -88,21 +88,23 @@ void BackgroundQueries::begin_export(Session& session, std::uint64_t request_id,
 }
 
 base::Result<void> BackgroundQueries::take_export_place(const std::string& user) {
-    const auto full = [](std::string message) {
-        return refusal(RefusalCode::ResourceExhausted, std::move(message), base::Reason::ExportsMax);
+    const auto full = [](std::string message, std::size_t held, std::size_t allowed) {
+        return base::limit_refusal(std::move(message), base::Reason::ExportsMax, "exports_max", held, allowed);
     };
     give_abandoned_places_back();
     (void)cancelled_count(); // deletes those that have ended
     if (std::ranges::count(cancelled_, user, &CancelledExport::user) >= std::ptrdiff_t{exports_max}) {
-        return full("many exports of this user are just being cancelled: try again");
+        return full("many exports of this user are just being cancelled: try again", exports_max, exports_max);
     }
     base::Quota& quota = export_quota_;
     switch (quota.ask(user)) {
     case base::Quota::Verdict::UserFull:
         return full("this user has " + std::to_string(quota.share()) +
-                    " exports running already, half of those that may run at once: try again when one has ended");
+                        " exports running already, half of those that may run at once: try again when one has ended",
+                    quota.held(user), quota.share());
     case base::Quota::Verdict::PoolFull:
-        return full(std::to_string(exports_max) + " exports are already running: try again when one has ended");
+        return full(std::to_string(exports_max) + " exports are already running: try again when one has ended",
+                    quota.held(), quota.total());
     case base::Quota::Verdict::FromLargest:
         take_back_export();
         break;
@@ -220,10 +222,10 @@ void BackgroundQueries::ask_breeding(Session& session, const v1::Request& reques
     if (waiting_breedings_.count(user) >= breedings_waiting_max) {
         limit_counters_.met(Limit::RunningBreedings);
         return session.answer(protocol::refusing(
-            request.request_id(),
-            refusal(RefusalCode::ResourceExhausted,
-                    std::to_string(breedings_waiting_max) + " GetBreeding of this user wait already: try again later",
-                    base::Reason::ServerBusy)));
+            request.request_id(), base::limit_refusal(std::to_string(breedings_waiting_max) +
+                                                          " GetBreeding of this user wait already: try again later",
+                                                      base::Reason::ServerBusy, "breedings_max",
+                                                      waiting_breedings_.count(user), breedings_waiting_max)));
     }
     const auto bytes = static_cast<std::ptrdiff_t>(sizeof(Breeding) + request.SpaceUsedLong());
     session.requests.expect(bytes);

@@ -144,10 +144,10 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     }
     if (!session.requests.admit()) {
         host_.limit_counters.met(Limit::RequestsInFlight);
-        return refuse_it(refusal(base::RefusalCode::ResourceExhausted,
-                                 std::to_string(requests_in_flight_max) +
-                                     " requests of this session are unanswered: wait for an answer",
-                                 base::Reason::RequestsInFlightMax));
+        return refuse_it(base::limit_refusal(std::to_string(requests_in_flight_max) +
+                                                 " requests of this session are unanswered: wait for an answer",
+                                             base::Reason::RequestsInFlightMax, "requests_in_flight_max",
+                                             requests_in_flight_max, requests_in_flight_max));
     }
     if (session.requests.query_under_way) {
         return session.requests.hold_back(std::move(request));

@@ -3,6 +3,7 @@
 #include "proto/codec/framing.h"
 #include "server/log/log.h"
 #include "server/protocol/answers.h"
+#include "server/protocol/event_text.h"
 #include "server/protocol/refusals.h"
 
 #include <chrono>
@@ -20,8 +21,12 @@ void log_refusal(std::uint64_t session, const std::string& by, const v1::Respons
         return;
     }
     const char* code = name_of(static_cast<base::RefusalCode>(response.status().code()));
+    std::string message = response.status().message(); // on one line
+    for (std::size_t end = 0; (end = message.find("\n  ", end)) != std::string::npos;) {
+        message.replace(end, 3, "; ");
+    }
     log::debug({.session = session, .client = by, .code = code}, "session {}: {}: request {} is refused: {}: {}",
-               session, by, response.request_id(), code, response.status().message());
+               session, by, response.request_id(), code, message);
 }
 
 v1::Response response_to(std::uint64_t request_id) {
@@ -47,6 +52,7 @@ SharedBytes encode_goodbye(const base::Refusal& why) {
 SharedBytes encode_event(v1::Event event) {
     using namespace std::chrono;
     event.set_time_ms(duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count());
+    event.set_text(protocol::event_text(event));
     v1::ServerMessage message;
     *message.mutable_event() = std::move(event);
     return encode_control(message);

@@ -6,8 +6,8 @@
 namespace evod::network {
 
 base::Result<std::optional<ReplayPlaces::Place>> ReplayPlaces::take(Place place) {
-    const auto refuse = [](std::string message) {
-        return refusal(base::RefusalCode::ResourceExhausted, std::move(message), base::Reason::ReplaysMax);
+    const auto refuse = [](std::string message, std::size_t held, std::size_t allowed) {
+        return base::limit_refusal(std::move(message), base::Reason::ReplaysMax, "replays_max", held, allowed);
     };
     std::optional<Place> lost;
     switch (quota_.ask(place.account)) {
@@ -15,10 +15,12 @@ base::Result<std::optional<ReplayPlaces::Place>> ReplayPlaces::take(Place place)
         break;
     case base::Quota::Verdict::UserFull:
         return refuse("this user, or this address without a token, has " + std::to_string(quota_.share()) +
-                      " replays open already: close one first");
+                          " replays open already: close one first",
+                      quota_.held(place.account), quota_.share());
     case base::Quota::Verdict::PoolFull:
         return refuse("all clients together have " + std::to_string(quota_.total()) +
-                      " replays open already: try again when one of them is closed");
+                          " replays open already: try again when one of them is closed",
+                      quota_.held(), quota_.total());
     case base::Quota::Verdict::FromLargest:
         lost = give_back(std::ranges::find(places_, quota_.largest(), &Place::account));
         break;

@@ -78,12 +78,14 @@ std::optional<base::Refusal> SessionTable::make_room(const std::string& account)
         return std::nullopt;
     }
     host_.limit_counters.met(Limit::Sessions);
-    return refusal(base::RefusalCode::ResourceExhausted,
-                   verdict == base::Quota::Verdict::UserFull
-                       ? "there are " + std::to_string(held.share()) +
-                             " sessions of this user, or from this address without a token: end one of them first"
-                       : "the server has " + std::to_string(sessions_max_) + " sessions: try again when one has ended",
-                   base::Reason::SessionsMax);
+    return verdict == base::Quota::Verdict::UserFull
+               ? base::limit_refusal("there are " + std::to_string(held.share()) +
+                                         " sessions of this user, or from this address without a token: end one of "
+                                         "them first",
+                                     base::Reason::SessionsMax, "sessions_max", held.held(account), held.share())
+               : base::limit_refusal("the server has " + std::to_string(sessions_max_) +
+                                         " sessions: try again when one has ended",
+                                     base::Reason::SessionsMax, "sessions_max", held.held(), held.total());
 }
 
 base::Quota SessionTable::places() const {

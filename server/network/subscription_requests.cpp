@@ -51,11 +51,11 @@ std::optional<base::Refusal> begin_snapshots(Session& session, const v1::Subscri
     }
     if (watched > watched_islands_max) {
         limit_counters.met(Limit::WatchedIslands);
-        return refusal(base::RefusalCode::ResourceExhausted,
-                       "the subscriptions of this session would come to more than " +
-                           std::to_string(watched_islands_max) +
-                           " islands: subscribe to single islands, or unsubscribe first",
-                       base::Reason::SubscriptionsMax);
+        return base::limit_refusal("the subscriptions of this session would come to more than " +
+                                       std::to_string(watched_islands_max) +
+                                       " islands: subscribe to single islands, or unsubscribe first",
+                                   base::Reason::SubscriptionsMax, "watched_islands_max",
+                                   watched - subscription.island_count, watched_islands_max);
     }
     response.mutable_subscription()->set_rate_hz(rate_hz);
     response.mutable_subscription()->set_subscription_id(streams.subscribe(session, std::move(subscription)));
@@ -91,10 +91,10 @@ std::optional<base::Refusal> begin_subscription(Session& session, const v1::Requ
                                                 LimitCounters& limit_counters, v1::Response& response) {
     if (session.snapshots.subscriptions.size() + session.events.size() >= subscriptions_max) {
         limit_counters.met(Limit::Subscriptions);
-        return refusal(base::RefusalCode::ResourceExhausted,
-                       "this session already has " + std::to_string(subscriptions_max) +
-                           " subscriptions: unsubscribe from one first",
-                       base::Reason::SubscriptionsMax);
+        return base::limit_refusal("this session already has " + std::to_string(subscriptions_max) +
+                                       " subscriptions: unsubscribe from one first",
+                                   base::Reason::SubscriptionsMax, "subscriptions_max",
+                                   session.snapshots.subscriptions.size() + session.events.size(), subscriptions_max);
     }
     if (request.has_subscribe_snapshots()) {
         return begin_snapshots(session, request.subscribe_snapshots(), world, streams, limit_counters, response);

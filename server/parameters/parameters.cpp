@@ -11,6 +11,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -21,27 +22,41 @@ using base::Effect;
 using base::Overloaded;
 using text::number_text;
 
+// The parameters that users change most often.
+constexpr std::string_view most_used[] = {
+    "food_count", "poison_count", "population_size", "selection", "tournament_size", "mutation_chance", "mutation_step",
+};
+
 // clang-format off
+#define EVOD_TOPIC_LINE(title) topic = title;
 #define EVOD_REAL_LINE(name, value, least, greatest, unit, effect, help)                                               \
-    {#name, unit, help, Effect::effect, RealParameter{{least, greatest},                                               \
-        [](const Parameters& p) { return p.name; }, [](Parameters& p, double v) { p.name = v; }}},
+    add(#name, unit, help, Effect::effect, RealParameter{{least, greatest},                                            \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, double v) { p.name = v; }});
 #define EVOD_COUNT_LINE(name, value, least, greatest, unit, effect, help)                                              \
-    {#name, unit, help, Effect::effect, CountParameter{{least, greatest},                                              \
-        [](const Parameters& p) { return p.name; }, [](Parameters& p, std::uint32_t v) { p.name = v; }}},
+    add(#name, unit, help, Effect::effect, CountParameter{{least, greatest},                                           \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, std::uint32_t v) { p.name = v; }});
 #define EVOD_FLAG_LINE(name, value, effect, help)                                                                      \
-    {#name, "", help, Effect::effect, FlagParameter{                                                                   \
-        [](const Parameters& p) { return p.name; }, [](Parameters& p, bool v) { p.name = v; }}},
+    add(#name, "", help, Effect::effect, FlagParameter{                                                                \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, bool v) { p.name = v; }});
 #define EVOD_CHOICE_LINE(name, Type, value, effect, help)                                                              \
-    {#name, "", help, Effect::effect, ChoiceParameter{base::ChoiceNames<Type>::names,                                  \
+    add(#name, "", help, Effect::effect, ChoiceParameter{base::ChoiceNames<Type>::names,                               \
         [](const Parameters& p) { return static_cast<std::size_t>(p.name); },                                          \
-        [](Parameters& p, std::size_t v) { p.name = static_cast<Type>(v); }}},
+        [](Parameters& p, std::size_t v) { p.name = static_cast<Type>(v); }});
 // clang-format on
 
 std::vector<ParameterDescription> make_registry() {
     using namespace evolution; // for the enumeration names in EVOD_EVOLUTION_PARAMETERS
     using base::count_max;
-    return {EVOD_MODEL_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
-                EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)};
+    std::vector<ParameterDescription> registry;
+    std::string_view topic;
+    const auto add = [&](std::string_view name, std::string_view unit, std::string_view help, Effect effect,
+                         decltype(ParameterDescription::kind) kind) {
+        const bool is_most_used = std::ranges::find(most_used, name) != std::end(most_used);
+        registry.push_back({name, unit, help, topic, is_most_used, effect, std::move(kind)});
+    };
+    EVOD_MODEL_PARAMETERS(EVOD_TOPIC_LINE, EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
+    EVOD_EVOLUTION_PARAMETERS(EVOD_TOPIC_LINE, EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
+    return registry;
 }
 
 /// Sets one parameter, or returns what is wrong with the value.
@@ -319,51 +334,62 @@ std::string groups_with_genes(const Parameters& parameters) {
     return names;
 }
 
-} // namespace
+/// The violations that validate() finds.
+class Faults {
+  public:
+    explicit Faults(std::string_view field_prefix) : prefix_{field_prefix} {}
 
-std::vector<base::Violation> validate(const Parameters& p, std::string_view field_prefix) {
-    std::vector<base::Violation> violations;
-    const auto refuse = [&](std::string_view field, std::string allowed, std::string got) {
-        violations.push_back({std::string{field_prefix} + std::string{field}, std::move(allowed), std::move(got)});
-    };
-    const auto require_order = [&](std::string_view greater, double max, std::string_view lesser, double min) {
+    void refuse(std::string_view field, std::string allowed, std::string got) {
+        found_.push_back({prefix_ + std::string{field}, std::move(allowed), std::move(got)});
+    }
+    void require_order(std::string_view greater, double max, std::string_view lesser, double min) {
         if (min > max) {
             refuse(greater, "at least " + std::string{lesser} + " (" + number_text(min) + ")", number_text(max));
         }
-    };
-    require_order("initial_gene_max", p.initial_gene_max, "initial_gene_min", p.initial_gene_min);
-    require_order("normal_speed_max", p.normal_speed_max, "normal_speed_min", p.normal_speed_min);
-    require_order("impulse_max", p.impulse_max, "impulse_min", p.impulse_min);
-    require_order("body_size_max", p.body_size_max, "body_size_min", p.body_size_min);
-    require_order("base_health_max", p.base_health_max, "base_health_min", p.base_health_min);
-    require_order("food_radius_max", p.food_radius_max, "food_radius_min", p.food_radius_min);
-    require_order("poison_radius_max", p.poison_radius_max, "poison_radius_min", p.poison_radius_min);
-    require_order("free_gene_max", p.free_gene_max, "free_gene_min", p.free_gene_min);
-    require_order("tournament_size", p.tournament_size, "tournament_winners", p.tournament_winners);
-    if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement) {
-        require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
     }
+    std::vector<base::Violation> take() { return std::move(found_); }
 
+  private:
+    const std::string prefix_;
+    std::vector<base::Violation> found_;
+};
+
+void check_orders(const Parameters& p, Faults& faults) {
+    faults.require_order("initial_gene_max", p.initial_gene_max, "initial_gene_min", p.initial_gene_min);
+    faults.require_order("normal_speed_max", p.normal_speed_max, "normal_speed_min", p.normal_speed_min);
+    faults.require_order("impulse_max", p.impulse_max, "impulse_min", p.impulse_min);
+    faults.require_order("body_size_max", p.body_size_max, "body_size_min", p.body_size_min);
+    faults.require_order("base_health_max", p.base_health_max, "base_health_min", p.base_health_min);
+    faults.require_order("food_radius_max", p.food_radius_max, "food_radius_min", p.food_radius_min);
+    faults.require_order("poison_radius_max", p.poison_radius_max, "poison_radius_min", p.poison_radius_min);
+    faults.require_order("free_gene_max", p.free_gene_max, "free_gene_min", p.free_gene_min);
+    faults.require_order("tournament_size", p.tournament_size, "tournament_winners", p.tournament_winners);
+    if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement) {
+        faults.require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
+    }
+}
+
+void check_totals(const Parameters& p, Faults& faults) {
     // Limits for a server with a few gigabytes of memory. The ranges of single parameters do not limit the totals over
     // all islands.
     const double organisms = static_cast<double>(p.island_count) * p.population_size;
     if (organisms > 4e6) {
-        refuse("island_count", "at most 4000000 organisms on all islands together",
-               std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
+        faults.refuse("island_count", "at most 4000000 organisms on all islands together",
+                      std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
     }
-    require_order("brain_weight_limit", p.brain_weight_limit, "brain_weight_initial", p.brain_weight_initial);
+    faults.require_order("brain_weight_limit", p.brain_weight_limit, "brain_weight_initial", p.brain_weight_initial);
     const bool has_brains = p.controller == evolution::Controller::Network;
     if (has_brains) {
         if (evolution::brain_layout(p).inputs.empty()) {
-            refuse("sense_food",
-                   "at least one sense: sense_food, sense_poison, sense_speed, sense_health or sense_wall",
-                   "a network without inputs");
+            faults.refuse("sense_food",
+                          "at least one sense: sense_food, sense_poison, sense_speed, sense_health or sense_wall",
+                          "a network without inputs");
         }
         if (p.locomotion == evolution::Locomotion::Kinematic) {
             const auto require_none = [&](std::string_view field, std::uint32_t count) {
                 if (count > 0) {
-                    refuse(field, "0 if locomotion is kinematic, because bodies then have no contacts",
-                           std::to_string(count));
+                    faults.refuse(field, "0 if locomotion is kinematic, because bodies then have no contacts",
+                                  std::to_string(count));
                 }
             };
             require_none("obstacle_count", p.obstacle_count);
@@ -372,58 +398,69 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     }
     if (const auto genes = static_cast<std::uint64_t>(organisms) * evolution::gene_count(p); genes > genes_max) {
         const unsigned weights = evolution::brain_genes(p).count;
-        refuse(weights > p.free_genes ? "brain_hidden" : "free_genes",
-               "at most " + std::to_string(genes_max) + " genes in all organisms together",
-               std::to_string(static_cast<std::uint64_t>(organisms)) + " organisms with a total of " +
-                   std::to_string(genes) + " genes");
+        faults.refuse(weights > p.free_genes ? "brain_hidden" : "free_genes",
+                      "at most " + std::to_string(genes_max) + " genes in all organisms together",
+                      std::to_string(static_cast<std::uint64_t>(organisms)) + " organisms with a total of " +
+                          std::to_string(genes) + " genes");
     }
     if (evolution::genes_of(p.mutate_group, p).count == 0) {
-        refuse("mutate_group", "a group with genes: " + groups_with_genes(p) + "; their number changes at a reset",
-               std::string{group_name(p.mutate_group)});
+        faults.refuse("mutate_group",
+                      "a group with genes: " + groups_with_genes(p) + "; their number changes at a reset",
+                      std::string{group_name(p.mutate_group)});
     }
+}
 
-    if (!has_bodies(p)) {
-        return violations;
-    }
-    require_order("generation_s", p.generation_s, "tick_s", p.tick_s);
+void check_bodies(const Parameters& p, Faults& faults) {
+    faults.require_order("generation_s", p.generation_s, "tick_s", p.tick_s);
     if (p.generation_s / p.tick_s > 1e9) {
-        refuse("generation_s", "at most 1e9 times tick_s", number_text(p.generation_s));
+        faults.refuse("generation_s", "at most 1e9 times tick_s", number_text(p.generation_s));
     }
     if (p.max_speed_px_s * p.tick_s > 5000) {
-        refuse("max_speed_px_s", "at most 5000 px per tick (tick_s)", number_text(p.max_speed_px_s));
+        faults.refuse("max_speed_px_s", "at most 5000 px per tick (tick_s)", number_text(p.max_speed_px_s));
     }
     const IslandPlan plan = island_plan(p);
     const std::string scaled = p.scale_with_population ? " after scaling with the population" : "";
     if (plan.width_px > 500'000) {
-        refuse("island_width_px", "at most 500000" + scaled, number_text(plan.width_px));
+        faults.refuse("island_width_px", "at most 500000" + scaled, number_text(plan.width_px));
     }
     if (plan.height_px > 500'000) {
-        refuse("island_height_px", "at most 500000" + scaled, number_text(plan.height_px));
+        faults.refuse("island_height_px", "at most 500000" + scaled, number_text(plan.height_px));
     }
     if (plan.food_count > 20'000'000) {
-        refuse("food_count", "at most 20000000" + scaled, std::to_string(plan.food_count));
+        faults.refuse("food_count", "at most 20000000" + scaled, std::to_string(plan.food_count));
     }
     if (plan.poison_count > 20'000'000) {
-        refuse("poison_count", "at most 20000000" + scaled, std::to_string(plan.poison_count));
+        faults.refuse("poison_count", "at most 20000000" + scaled, std::to_string(plan.poison_count));
     }
     const double items =
         static_cast<double>(p.island_count) * (static_cast<double>(plan.food_count) + plan.poison_count);
     if (items > 4e7) {
-        refuse("island_count", "at most 40000000 items on all islands together",
-               std::to_string(p.island_count) + " islands with a total of " + number_text(items));
+        faults.refuse("island_count", "at most 40000000 items on all islands together",
+                      std::to_string(p.island_count) + " islands with a total of " + number_text(items));
     }
     if (const double side = std::min(plan.width_px, plan.height_px); 2 * p.spawn_margin_px >= side) {
-        refuse("spawn_margin_px", "less than half of the island's shorter side (" + number_text(side / 2) + ")",
-               number_text(p.spawn_margin_px));
-        return violations;
+        faults.refuse("spawn_margin_px", "less than half of the island's shorter side (" + number_text(side / 2) + ")",
+                      number_text(p.spawn_margin_px));
+        return;
     }
     if (const double share = covered_share(p, plan); share > 0.4) {
-        refuse("population_size",
-               "at most 0.4 of an island covered by organisms of the size body_size_max, crates and obstacles",
-               std::to_string(p.population_size) + " organisms, covered share " +
-                   number_text(std::round(share * 1000) / 1000));
+        faults.refuse("population_size",
+                      "at most 0.4 of an island covered by organisms of the size body_size_max, crates and obstacles",
+                      std::to_string(p.population_size) + " organisms, covered share " +
+                          number_text(std::round(share * 1000) / 1000));
     }
-    return violations;
+}
+
+} // namespace
+
+std::vector<base::Violation> validate(const Parameters& p, std::string_view field_prefix) {
+    Faults faults{field_prefix};
+    check_orders(p, faults);
+    check_totals(p, faults);
+    if (has_bodies(p)) {
+        check_bodies(p, faults);
+    }
+    return faults.take();
 }
 
 Parameters taking_effect(const Parameters& active, const RequestedParameters& requested, base::Effect reached) {

@@ -5,10 +5,12 @@
 namespace evod::protocol {
 namespace {
 
+#define EVOD_NO_NAME(topic)
 #define EVOD_NAME(name, ...) #name,
 constexpr std::string_view genetic_parameters[] = {
-    EVOD_EVOLUTION_PARAMETERS(EVOD_NAME, EVOD_NAME, EVOD_NAME, EVOD_NAME)};
+    EVOD_EVOLUTION_PARAMETERS(EVOD_NO_NAME, EVOD_NAME, EVOD_NAME, EVOD_NAME, EVOD_NAME)};
 #undef EVOD_NAME
+#undef EVOD_NO_NAME
 
 v1::MutationKind to_proto(evolution::ChangeKind kind) {
     switch (kind) {

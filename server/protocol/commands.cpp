@@ -377,7 +377,7 @@ base::Refusal invalid(std::vector<base::Violation> violations) {
         .code = base::RefusalCode::InvalidArgument, .message = {}, .violations = std::move(violations)};
     const Violation& first = refusal.violations.front();
     refusal.message = refusal.violations.size() == 1
-                          ? first.field + " must be " + first.allowed + ", not " + quotable(first.got)
+                          ? first.field + ": " + text::violation_text(quotable(first.got), first.allowed)
                           : std::to_string(refusal.violations.size()) + " fields are invalid";
     return refusal;
 }

@@ -59,6 +59,8 @@ v1::ParameterDescription to_proto(const parameters::ParameterDescription& descri
     to.set_name(std::string{description.name});
     to.set_unit(std::string{description.unit});
     to.set_help(std::string{description.help});
+    to.set_topic(std::string{description.topic});
+    to.set_is_most_used(description.is_most_used);
     to.set_effect(to_proto(description.effect));
     *to.mutable_default_value() = to_proto(description.default_value());
     if (const auto* real = std::get_if<parameters::RealParameter>(&description.kind)) {

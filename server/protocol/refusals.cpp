@@ -11,6 +11,7 @@ namespace {
 // Maximum number of violations in an answer. Without a limit, a hostile request could cause an answer of several
 // megabytes.
 constexpr std::size_t violations_listed_max = 200;
+constexpr int violations_shown_max = 20; // of them, those that the message contains
 
 /// Returns the reason of a refusal, or the default reason of its code.
 base::Reason reason_of(const base::Refusal& refusal) {
@@ -37,18 +38,28 @@ v1::Status to_proto(const base::Refusal& refusal) {
     v1::Status status;
     status.set_code(static_cast<v1::Code>(refusal.code));
     status.set_reason(static_cast<v1::Reason>(reason_of(refusal)));
-    status.set_message(quotable(public_text(refusal.message), 2000));
+    std::string message = quotable(public_text(refusal.message), 2000);
     for (const base::Violation& violation : refusal.violations) {
         if (static_cast<std::size_t>(status.violations_size()) == violations_listed_max) {
-            status.mutable_message()->append(" (" + std::to_string(refusal.violations.size()) +
-                                             " fields are invalid; the first " + std::to_string(violations_listed_max) +
-                                             " are listed)");
             break;
         }
         v1::Violation& listed = *status.add_violations();
         listed.set_field(quotable(violation.field, 200));
         listed.set_allowed(quotable(public_text(violation.allowed), 2000));
         listed.set_got(violation.got.empty() ? "nothing" : quotable(public_text(violation.got), 200));
+        const bool is_in_sentence = refusal.violations.size() == 1 && message.starts_with(listed.field() + ": ");
+        if (!is_in_sentence && status.violations_size() <= violations_shown_max) {
+            message += "\n  " + listed.field() + ": " + text::violation_text(listed.got(), listed.allowed());
+        }
+    }
+    if (refusal.violations.size() > violations_shown_max) {
+        message += "\n  and " + std::to_string(refusal.violations.size() - violations_shown_max) + " more fields";
+    }
+    status.set_message(std::move(message));
+    for (const base::Argument& argument : refusal.arguments) {
+        v1::Argument& to = *status.add_arguments();
+        to.set_name(argument.name);
+        to.set_value(quotable(public_text(argument.value), 200));
     }
     return status;
 }

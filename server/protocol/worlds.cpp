@@ -1,6 +1,7 @@
 #include "server/protocol/worlds.h"
 
 #include "server/base/assert.h"
+#include "server/protocol/event_text.h"
 #include "server/protocol/public_text.h"
 #include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
@@ -78,6 +79,7 @@ v1::Storage to_proto(const simulation::Storage& storage) {
         to.set_state(v1::STORAGE_STATE_STALLED);
         break;
     }
+    to.set_text(storage_text(to));
     return to;
 }
 

@@ -175,14 +175,15 @@ std::optional<Refusal> refusal_of_counts(const Island& island, const PlaceEntiti
         static_cast<std::size_t>(std::ranges::count(command.items, ItemKind::Food, &PlaceEntities::Item::kind));
     const auto is_too_many = [](std::size_t placed, std::size_t more) { return placed + more > placed_max; };
     const auto placed_of = [](const Items& items) { return std::size_t{items.size() - items.first_count()}; };
+    const std::size_t organisms = island.fate().cause.size() - island.bred_count();
     if (is_too_many(placed_of(island.food()), food) ||
         is_too_many(placed_of(island.poison()), command.items.size() - food) ||
-        is_too_many(island.fate().cause.size() - island.bred_count(), command.organisms.size())) {
-        return refusal(RefusalCode::ResourceExhausted,
-                       "an island gets at most " + std::to_string(placed_max) +
-                           " placed food items, poison items and organisms each in one generation: wait for the next "
-                           "generation",
-                       base::Reason::PlacedMax);
+        is_too_many(organisms, command.organisms.size())) {
+        const std::size_t placed_most = std::max({placed_of(island.food()), placed_of(island.poison()), organisms});
+        return base::limit_refusal(
+            "an island gets at most " + std::to_string(placed_max) +
+                " placed food items, poison items and organisms each in one generation: wait for the next generation",
+            base::Reason::PlacedMax, "placed_max", placed_most, placed_max);
     }
     return std::nullopt;
 }
@@ -244,7 +245,9 @@ Result<void> check(const World& world, const RemoveEntities& command) {
                        .message = "the ids belong to a generation that is not the current one",
                        .violations = {{"remove.generation", std::to_string(world.moment().generation),
                                        std::to_string(*command.generation)}},
-                       .reason = base::Reason::GenerationChanged};
+                       .reason = base::Reason::GenerationChanged,
+                       .arguments = {{"expected_generation", std::to_string(*command.generation)},
+                                     {"generation", std::to_string(world.moment().generation)}}};
     }
     const Island& island = world.island(command.island);
     const auto is_present = [](const Items& items) {

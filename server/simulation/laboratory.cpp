@@ -1,5 +1,6 @@
 #include "server/simulation/laboratory.h"
 
+#include "proto/text/suggestion.h"
 #include "server/base/inline_executor.h"
 #include "server/simulation/entities.h"
 #include "server/simulation/rating.h"
@@ -95,10 +96,10 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
                        .violations = std::move(violations)};
     }
     if (world.planned().size() >= parameters::planned_changes_max) {
-        return refusal(RefusalCode::ResourceExhausted,
-                       "there are " + std::to_string(parameters::planned_changes_max) +
-                           " planned changes already: cancel one first",
-                       base::Reason::PlannedChangesMax);
+        return base::limit_refusal("there are " + std::to_string(parameters::planned_changes_max) +
+                                       " planned changes already: cancel one first",
+                                   base::Reason::PlannedChangesMax, "planned_changes_max", world.planned().size(),
+                                   parameters::planned_changes_max);
     }
     return std::nullopt;
 }
@@ -196,7 +197,8 @@ base::Refusal no_such_replay(std::string_view name) {
     return {.code = RefusalCode::NotFound,
             .message = "there is no such replay",
             .violations = {{"world", "one that was opened with OpenReplay", std::string{name}}},
-            .reason = base::Reason::WorldNotFound};
+            .reason = base::Reason::WorldNotFound,
+            .arguments = {{"world", std::string{name}}}};
 }
 
 namespace {
@@ -242,27 +244,36 @@ Refusal Laboratory::not_found(std::string_view name) const {
     if (is_replay_name(name)) {
         return no_such_replay(name);
     }
-    std::string names;
-    const auto add_name = [&names](const std::string& one) { names += (names.empty() ? "" : ", ") + one; };
+    std::vector<std::string_view> names;
     for (const auto& entry : entries_) {
         if (is_world(entry)) {
-            add_name(entry->name);
+            names.push_back(entry->name);
         }
     }
     for (const DamagedWorld& world : damaged_) {
-        add_name(world.name);
+        names.push_back(world.name);
     }
     if (names.empty()) {
         return refusal(RefusalCode::NotFound, "there is no world: create one", base::Reason::WorldNotFound);
     }
+    std::string list;
+    for (const std::string_view one : names) {
+        list += (list.empty() ? "" : ", ") + std::string{one};
+    }
     if (name.empty()) {
-        return refusal(RefusalCode::NotFound, "the request names no world: name one of " + names,
+        return refusal(RefusalCode::NotFound, "the request names no world: name one of " + list,
                        base::Reason::WorldNotFound);
     }
-    return Refusal{.code = RefusalCode::NotFound,
-                   .message = "no world has that name",
-                   .violations = {{"world", names, std::string{name}}},
-                   .reason = base::Reason::WorldNotFound};
+    Refusal refused{.code = RefusalCode::NotFound,
+                    .message = "no world has that name",
+                    .violations = {{"world", list, std::string{name}}},
+                    .reason = base::Reason::WorldNotFound,
+                    .arguments = {{"world", std::string{name}}}};
+    if (const auto similar = text::nearest(name, names); !similar.empty()) {
+        refused.message += text::did_you_mean(name, names);
+        refused.arguments.push_back({"suggestion", similar.front()});
+    }
+    return refused;
 }
 
 Result<const Entry*> Laboratory::find(std::string_view name) const {
@@ -301,9 +312,8 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
                        .reason = base::Reason::WorldExists};
     }
     if (is_full()) {
-        return refusal(RefusalCode::ResourceExhausted,
-                       "there are " + std::to_string(worlds_max_) + " worlds already: delete one first",
-                       base::Reason::WorldsMax);
+        return base::limit_refusal("there are " + std::to_string(worlds_max_) + " worlds already: delete one first",
+                                   base::Reason::WorldsMax, "worlds_max", worlds_max_, worlds_max_);
     }
     return std::nullopt;
 }
@@ -482,7 +492,9 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
                                   "the change with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}},
-                       .reason = base::Reason::RevisionChanged};
+                       .reason = base::Reason::RevisionChanged,
+                       .arguments = {{"expected_revision", std::to_string(*command.expected_revision)},
+                                     {"revision", std::to_string(world.parameters().revision)}}};
     }
     if (command.at) {
         if (auto refused = refusal_of_plan(world, command)) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace evod::simulation {
 namespace {
@@ -19,8 +20,9 @@ Refusal refusal_of(RefusalCode code, std::string message, base::Reason reason, b
     return {.code = code, .message = std::move(message), .violations = {std::move(violation)}, .reason = reason};
 }
 
-Refusal not_awaited(std::string why) {
-    return refusal(RefusalCode::FailedPrecondition, std::move(why), base::Reason::FitnessNotAwaited);
+Refusal not_awaited(std::string why, std::vector<base::Argument> arguments = {}) {
+    return refusal(RefusalCode::FailedPrecondition, std::move(why), base::Reason::FitnessNotAwaited,
+                   std::move(arguments));
 }
 
 } // namespace
@@ -31,13 +33,18 @@ base::Result<void> check(const World& world, const SetFitness& command) {
     }
     const std::uint64_t generation = world.moment().generation;
     if (command.generation != generation) {
-        return refusal_of(RefusalCode::Aborted, "the numbers belong to a generation that is not the current one",
-                          base::Reason::GenerationChanged,
-                          {"set_fitness.generation", std::to_string(generation), std::to_string(command.generation)});
+        Refusal refused =
+            refusal_of(RefusalCode::Aborted, "the numbers belong to a generation that is not the current one",
+                       base::Reason::GenerationChanged,
+                       {"set_fitness.generation", std::to_string(generation), std::to_string(command.generation)});
+        refused.arguments = {{"expected_generation", std::to_string(command.generation)},
+                             {"generation", std::to_string(generation)}};
+        return refused;
     }
     if (!world.awaits_fitness()) {
         return not_awaited("generation " + std::to_string(generation) +
-                           (world.generation_over() ? " has been rated already" : " has not ended yet"));
+                               (world.generation_over() ? " has been rated already" : " has not ended yet"),
+                           {{"generation", std::to_string(generation)}});
     }
     if (command.island >= world.island_count()) {
         return refusal_of(
@@ -46,7 +53,8 @@ base::Result<void> check(const World& world, const SetFitness& command) {
     }
     if (world.is_rated(command.island)) {
         return not_awaited("island " + std::to_string(command.island) + " has been rated already in generation " +
-                           std::to_string(generation));
+                               std::to_string(generation),
+                           {{"generation", std::to_string(generation)}, {"island", std::to_string(command.island)}});
     }
     const std::size_t given = world.given_fitness()[command.island].size();
     if (command.first_organism != 0 && command.first_organism != given) {

@@ -1,4 +1,5 @@
-"""A real evod and a client of it, for the programs beside it, with one request at a time; and how they print figures."""
+"""A real evod and a client of it, for the programs beside it, with one request at a time; and how they print
+figures."""
 import json
 import os
 import re
@@ -58,7 +59,8 @@ class Client:
 
 
 class Server:
-    """A server of its own at a free port, whose log is read away. start_s: from its exec to the welcome of `control`."""
+    """A server of its own at a free port, whose log is read away. start_s: from its exec to the welcome of
+    `control`."""
 
     def __init__(self, evod, *arguments):
         began = time.perf_counter()

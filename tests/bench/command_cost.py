@@ -1,12 +1,14 @@
-"""How long a command waits for the disk, beside checkpoints of a large world too, and beside what the disk itself takes.
+"""How long a command waits for the disk, beside checkpoints of a large world too, and beside what the disk itself
+takes.
 
     command_cost.py EVOD MESSAGES [--organisms N] [--seconds S] [--data FOLDER] [--json]
 
-A world runs at full speed, in a generation that does not end. One client sends a command and a query by turns, each once
-the one before is answered. Both wait for the tick that is being simulated; only the command waits for the disk. A command
-came beside a checkpoint if the server wrote more than 100 KB meanwhile, which commands and hashes do not take: then a
-checkpoint was being written, or a log copied. The disk itself: 4 KiB appended to a file of the same folder, and fdatasync.
-How long commands waited for the disk once they had been carried out, and commits took, is what the server measures itself.
+A world runs at full speed, in a generation that does not end. One client sends a command and a query by turns, each
+once the one before is answered. Both wait for the tick that is being simulated; only the command waits for the disk. A
+command came beside a checkpoint if the server wrote more than 100 KB meanwhile, which commands and hashes do not take:
+then a checkpoint was being written, or a log copied. The disk itself: 4 KiB appended to a file of the same folder, and
+fdatasync. How long commands waited for the disk once they had been carried out, and commits took, is what the server
+measures itself.
 """
 import argparse
 import contextlib
@@ -99,7 +101,8 @@ def measure_commands(folder):
                     looked = time.monotonic()
                     checkpoints |= {tick for (tick,) in run.execute("SELECT tick FROM checkpoint")}
             ticks = tick() - first_tick
-            waited, commits = histogram_of(control, "evod_journal_wait_seconds"), histogram_of(control, "evod_journal_commit_seconds")
+            waited = histogram_of(control, "evod_journal_wait_seconds")
+            commits = histogram_of(control, "evod_journal_commit_seconds")
     return {"checkpoints": len(checkpoints), "tick_ms": 1e3 * options.seconds / max(ticks, 1),
             "command_alone": shares(alone), "command_beside_a_checkpoint": shares(beside), "query": shares(queries),
             "waited_for_the_disk": waited, "commit": commits}

@@ -1,9 +1,11 @@
-"""Generations per second of World.evaluate() with a NumPy function, beside the same world that computes its fitness itself.
+"""Generations per second of World.evaluate() with a NumPy function, beside the same world that computes its fitness
+itself.
 
     evaluate_cost.py EVOD PACKAGE [--rounds N] [--organisms N] [--generations N] [--json]
 
-Each round rates N organisms in N generations over the loopback interface. The server stores the run, with the durability that
-it has by default. Start-up and the creation of the worlds are excluded. The processor time is that of this program.
+Each round rates N organisms in N generations over the loopback interface. The server stores the run, with the
+durability that it has by default. Start-up and the creation of the worlds are excluded. The processor time is that of
+this program.
 """
 import argparse
 import sys

@@ -2,10 +2,11 @@
 
     exchange_cost.py FOLDER [--organisms N] [--rounds N] [--model]
 
-FOLDER contains evod, evod_mpi.so and exchange_cost: build/release/bin. Without --model, measures on this machine: the time
-of exchanges between two processes, and a world of eight islands with one process and one thread, two processes, and two
-threads. It repeats each measurement and takes the shortest, because other programs may use the machine. Then it prints
-weak and strong scaling to 1,000 processes, calculated from the constants below. --model prints only these tables.
+FOLDER contains evod, evod_mpi.so and exchange_cost: build/release/bin. Without --model, measures on this machine: the
+time of exchanges between two processes, and a world of eight islands with one process and one thread, two processes,
+and two threads. It repeats each measurement and takes the shortest, because other programs may use the machine. Then it
+prints weak and strong scaling to 1,000 processes, calculated from the constants below. --model prints only these
+tables.
 """
 import argparse
 import json
@@ -40,7 +41,8 @@ def generation(processes, islands, organisms, threads, network, run_file=False, 
     rounds = math.ceil(math.log2(processes)) if processes > 1 else 0
     slice_ticks = 60 if run_file else SLICE_TICKS
     slices = math.ceil(min(TICKS, max(mean_s / SERVER_SLICE_S, TICKS / 60)) if server else TICKS / slice_ticks)
-    # One after another: an order and an exchange of states per slice; statistics, migrants, beginning of the generation.
+    # One after another: an order and an exchange of states per slice; statistics, migrants, beginning of the
+    # generation.
     messages = rounds * (3 * slices + 8)
     exchanged = islands * (STATISTICS_BYTES + 32 * slices) + most * MIGRANT_BYTES
     # The expected largest of R sums of `most` normally distributed times.
@@ -59,12 +61,14 @@ def print_table(title, rows, network):
           "processes   compute   waiting  exchange   to rank 0   with it  without  server without it")
     first = None
     for row in rows:
-        stored, plain, served = (generation(*row, network, **kind) for kind in ({"run_file": True}, {}, {"server": True}))
+        stored, plain, served = (generation(*row, network, **kind)
+                                 for kind in ({"run_file": True}, {}, {"server": True}))
         processes, islands, organisms, _ = row
         work = islands * organisms / processes
         first = first or work / plain["all"]
         shares = [work / parts["all"] / first for parts in (stored, plain, served)]
-        print(f"{processes:9} {plain['compute']:9.3f} {plain['wait']:9.3f} {plain['exchange']:9.4f} {stored['receive']:11.2f} "
+        print(f"{processes:9} {plain['compute']:9.3f} {plain['wait']:9.3f} {plain['exchange']:9.4f} "
+              f"{stored['receive']:11.2f} "
               f"{shares[0]:9.0%} {shares[1]:8.0%} {shares[2]:9.0%}          {'#' * round(30 * shares[1])}")
 
 

@@ -196,7 +196,8 @@ def measure():
             figures["no_attacker"] = measure_run(server, commander)
             for name in attacks:
                 if options.only in (None, name):
-                    with subprocess.Popen(["nice", "-n", "10", sys.executable, *sys.argv, "--attack", name, str(server.port), token],
+                    with subprocess.Popen(["nice", "-n", "10", sys.executable, *sys.argv, "--attack", name,
+                                           str(server.port), token],
                                           stderr=subprocess.PIPE) as attacker:
                         time.sleep(1)
                         figures[name] = measure_run(server, commander)

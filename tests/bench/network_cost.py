@@ -1,12 +1,13 @@
-"""What clients cost the simulation, whether they watch, idle or attack; how soon commands and snapshots arrive meanwhile.
+"""What clients cost the simulation, whether they watch, idle or attack; how soon commands and snapshots arrive
+meanwhile.
 
     network_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--only NAME ...] [--json]
 
-The world is that of default.json with scale_with_population. It runs free with one worker; the same ticks of the same run
-are simulated by turns with such clients and without. The clients are a process of their own (tests/system/attacker.py),
-pinned to another core than the server's simulation thread. A loss is the rise of the simulation thread's processor time
-per tick, plus the processor time of all other threads of the server over the simulation thread's. Snapshots come 20 times
-a second, as deltas without compression.
+The world is that of default.json with scale_with_population. It runs free with one worker; the same ticks of the same
+run are simulated by turns with such clients and without. The clients are a process of their own
+(tests/system/attacker.py), pinned to another core than the server's simulation thread. A loss is the rise of the
+simulation thread's processor time per tick, plus the processor time of all other threads of the server over the
+simulation thread's. Snapshots come 20 times a second, as deltas without compression.
 """
 import argparse
 import json
@@ -95,7 +96,8 @@ def loss(server, kind, number):
         walls.append(100 * (beside[2] / alone[2] - 1))
     return {"loss_percent": spread(losses), "simulation_rise_percent": spread(rises),
             "others_share_percent": spread(shares), "wall_rise_percent": spread(walls),
-            "memory_bytes_each": spread(memory), **{name: became[name] for name in ("frames", "bytes", "closed", "seconds")}}
+            "memory_bytes_each": spread(memory), **{name: became[name]
+                                                    for name in ("frames", "bytes", "closed", "seconds")}}
 
 
 def measure_losses():

@@ -2,13 +2,13 @@
 
     python_cost.py EVOD PACKAGE [--rounds N] [--seconds S] [--organisms N] [--json]
 
-Generations: each round runs the same hundred generations of the default world on one thread, first with `evod run`, then
-with World.run() and a Python callback for each. Start-up is excluded. On a busy machine compare the processor time of the
-simulation thread rather than the clock.
+Generations: each round runs the same hundred generations of the default world on one thread, first with `evod run`,
+then with World.run() and a Python callback for each. Start-up is excluded. On a busy machine compare the processor time
+of the simulation thread rather than the clock.
 
 Snapshots: one connection receives them from a world at full speed and converts every column to px. It has several
-subscriptions, as the server sends each at most 120 snapshots per second. Then the same snapshots are decoded from memory,
-which measures the package alone.
+subscriptions, as the server sends each at most 120 snapshots per second. Then the same snapshots are decoded from
+memory, which measures the package alone.
 """
 import argparse
 import copy
@@ -130,7 +130,8 @@ def snapshots(program, organisms, seconds):
         for _, body in reader.frames():
             convert(decoder.decode(stream_pb2.SnapshotFrame.FromString(body)))
     alone_per_s = len(data) / (time.perf_counter() - began)
-    return {"organisms": organisms, "come_per_s": come_per_s, "ticks_per_s": ticks_per_s, "decoded_alone_per_s": alone_per_s,
+    return {"organisms": organisms, "come_per_s": come_per_s, "ticks_per_s": ticks_per_s,
+            "decoded_alone_per_s": alone_per_s,
             "frame_bytes": statistics.mean(map(len, data))}
 
 

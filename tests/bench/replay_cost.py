@@ -2,9 +2,9 @@
 
     replay_cost.py EVOD MESSAGES [--repeats R] [--replays N] [--json]
 
-In each repetition: the ticks per second of a live world of 500 organisms at full speed, and of one of 50,000 organisms at real
-time, without and with replays at full speed that one user has opened; and the time of a seek across a generation, while the live
-world is paused and while it runs at full speed.
+In each repetition: the ticks per second of a live world of 500 organisms at full speed, and of one of 50,000 organisms
+at real time, without and with replays at full speed that one user has opened; and the time of a seek across a
+generation, while the live world is paused and while it runs at full speed.
 """
 import argparse
 import json
@@ -60,7 +60,8 @@ def open_replays(port, count):
 
 def live(organisms, factor, seconds):
     """Ticks per second of the live world alone, and next to the replays."""
-    with tempfile.TemporaryDirectory() as folder, Server(options.evod, "--data", folder, "--durability", "relaxed") as server:
+    with tempfile.TemporaryDirectory() as folder, Server(options.evod, "--data", folder, "--durability",
+                                                         "relaxed") as server:
         make(server.control, organisms)
         time.sleep(2)
         set_speed(server.control, "w", factor)
@@ -76,7 +77,8 @@ def live(organisms, factor, seconds):
 
 def seeks(organisms):
     """Milliseconds of a seek from the first to the last tick of a generation: live world paused, and at full speed."""
-    with tempfile.TemporaryDirectory() as folder, Server(options.evod, "--data", folder, "--durability", "relaxed") as server:
+    with tempfile.TemporaryDirectory() as folder, Server(options.evod, "--data", folder, "--durability",
+                                                         "relaxed") as server:
         make(server.control, organisms)
         while tick(server.control) < 3000:
             time.sleep(0.05)
@@ -103,10 +105,13 @@ def main():
     figures = []
     for _ in range(options.repeats):
         small, large, seek_small, seek_large = live(500, None, 3), live(50_000, 1.0, 4), seeks(500), seeks(20_000)
-        figures.append({"live_500_ticks_per_s": small[0], "live_500_next_to_replays": small[1], "part": small[1] / small[0],
+        figures.append({"live_500_ticks_per_s": small[0], "live_500_next_to_replays": small[1],
+                        "part": small[1] / small[0],
                         "live_50000_real_time_ticks_per_s": large[0], "live_50000_next_to_replays": large[1],
-                        "seek_500_ms": seek_small["paused"], "seek_500_next_to_full_speed_ms": seek_small["at full speed"],
-                        "seek_20000_ms": seek_large["paused"], "seek_20000_next_to_full_speed_ms": seek_large["at full speed"]})
+                        "seek_500_ms": seek_small["paused"],
+                        "seek_500_next_to_full_speed_ms": seek_small["at full speed"],
+                        "seek_20000_ms": seek_large["paused"],
+                        "seek_20000_next_to_full_speed_ms": seek_large["at full speed"]})
     medians = {name: statistics.median(one[name] for one in figures) for name in figures[0]}
     if options.json:
         print(json.dumps(medians))

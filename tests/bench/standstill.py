@@ -2,9 +2,9 @@
 
     standstill.py EVOD MESSAGES [--organisms N] [--repeats R] [--json]
 
-A small world runs at full speed. One client asks for the list of the worlds every 2 ms. A second client sends the command
-about the large world. For each command: how long its reply took, the longest time without a reply to the first client, and
-the longest time in which the small world did not advance. The same for a second without any command.
+A small world runs at full speed. One client asks for the list of the worlds every 2 ms. A second client sends the
+command about the large world. For each command: how long its reply took, the longest time without a reply to the first
+client, and the longest time in which the small world did not advance. The same for a second without any command.
 """
 import argparse
 import os

@@ -2,10 +2,10 @@
 
     storage_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
 
-The same ticks of the same run are simulated again and again at full speed on one thread, by turns by a server that keeps
-its runs and one that keeps nothing. The cost is the rise of the simulation thread's processor time and the processor
-time of the threads that write and pack, both over the simulation thread's time where nothing is kept. A server is killed late in a
-generation, so that most of one is to be simulated again.
+The same ticks of the same run are simulated again and again at full speed on one thread, by turns by a server that
+keeps its runs and one that keeps nothing. The cost is the rise of the simulation thread's processor time and the
+processor time of the threads that write and pack, both over the simulation thread's time where nothing is kept. A
+server is killed late in a generation, so that most of one is to be simulated again.
 """
 import argparse
 import signal

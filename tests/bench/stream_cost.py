@@ -3,14 +3,15 @@
     stream_cost.py EVOD MESSAGES [--organisms N ...] [--movers] [--seconds S] [--json]
 
 Each world runs at real time, and one viewer at a time reads 30 snapshots a second of the same stretch of it. Bytes
-are those of whole frames with their headers, keyframes included; the server's time is that of its network thread, sending
-included.
+are those of whole frames with their headers, keyframes included; the server's time is that of its network thread,
+sending included.
 
-With --movers instead: 23,000 entities of which some move, by delta and zstd, 20 snapshots a second, 3 ticks from one to the
-next. `half_move` is default.json with scale_with_population and 10,000 organisms; of `tenth_moves` 2,300 are organisms on
-as much ground; of `all_move` all are, with ground in proportion. Bytes are those of an entity and snapshot; a keyframe is
-either one that all get, every 2 s, or `asked` for by one viewer in between. Then what the simulation thread does to give a
-snapshot away, as the server measures it, of 10,000 and 100,000 organisms at full speed.
+With --movers instead: 23,000 entities of which some move, by delta and zstd, 20 snapshots a second, 3 ticks from one to
+the next. `half_move` is default.json with scale_with_population and 10,000 organisms; of `tenth_moves` 2,300 are
+organisms on as much ground; of `all_move` all are, with ground in proportion. Bytes are those of an entity and
+snapshot; a keyframe is either one that all get, every 2 s, or `asked` for by one viewer in between. Then what the
+simulation thread does to give a snapshot away, as the server measures it, of 10,000 and 100,000 organisms at full
+speed.
 """
 import argparse
 import ctypes
@@ -178,5 +179,6 @@ figures = measure()
 if options.json:
     print_figures(list(figures.values()), True)
 else:
-    print_figures({name: {k: v for k, v in of.items() if k not in ("organisms", "codec")} for name, of in figures.items()},
+    print_figures({name: {k: v for k, v in of.items() if k not in ("organisms", "codec")} for name,
+                   of in figures.items()},
                   False)

@@ -3,7 +3,8 @@
     viewer_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
 
 The server simulates the same ticks of the same run repeatedly at full speed on one thread, alternately with and without
-a subscriber at 30 snapshots per second. The program compares the processor time of the simulation thread for these ticks.
+a subscriber at 30 snapshots per second. The program compares the processor time of the simulation thread for these
+ticks.
 """
 import argparse
 import socket
@@ -74,7 +75,8 @@ def measure_memory():
 
 
 def measure_viewer(server):
-    """Seconds of the simulation thread per tick, without and with a viewer; snapshots received, and bytes of the last."""
+    """Seconds of the simulation thread per tick, without and with a viewer; snapshots received, and bytes of the
+    last."""
     per_tick = {False: [], True: []}
     snapshots = 0
     control = server.control

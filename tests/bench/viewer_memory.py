@@ -1,6 +1,7 @@
 """Measures whether the memory of evoview grows while it shows a world for some minutes, on the display DISPLAY.
 
-    under_xvfb.sh viewer_memory.py EVOD EVOVIEW MESSAGES [--organisms N] [--speed N] [--minutes N] [--keys "F5 T"] [--json]
+    under_xvfb.sh viewer_memory.py EVOD EVOVIEW MESSAGES [--organisms N] [--speed N] [--minutes N] [--keys "F5 T"]
+    [--json]
 """
 import argparse
 import re

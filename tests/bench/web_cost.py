@@ -3,9 +3,9 @@
     web_cost.py EVOD MESSAGES [--organisms N ...] [--seconds S] [--viewers N] [--json]
 
 For each number of organisms a headless Chromium without a GPU (ANGLE's SwiftShader) shows a world of the benchmark
-world's density at real time. Decoding and drawing are those of the last 200 snapshots and frames in the worker; `first` is
-the time from the navigation until the first snapshot is drawn, of a new browser and of a reload; the heaps of page and
-worker are read after a garbage collection, when the page has settled and after the seconds of measurement.
+world's density at real time. Decoding and drawing are those of the last 200 snapshots and frames in the worker; `first`
+is the time from the navigation until the first snapshot is drawn, of a new browser and of a reload; the heaps of page
+and worker are read after a garbage collection, when the page has settled and after the seconds of measurement.
 
 With --viewers N instead: N clients like browsers (WebSockets, masked frames, at most 2 unacknowledged snapshots, 30 a
 second, deltas without compression) watch a world of 50 organisms each at real time. The figures are the processor time
@@ -53,7 +53,8 @@ def create(server, name, organisms):
     server.control.call(run=c.Run(world=name))
 
 
-# ---- the browser -------------------------------------------------------------------------------------------------------
+# ---- the browser
+# -------------------------------------------------------------------------------------------------------
 
 
 class Heaps:
@@ -134,7 +135,8 @@ def measure_page(organisms):
             browser.close()
 
 
-# ---- many viewers ------------------------------------------------------------------------------------------------------
+# ---- many viewers
+# ------------------------------------------------------------------------------------------------------
 
 
 class Viewer:
@@ -226,7 +228,8 @@ def measure_viewers(count):
             slowed = sum(world.slowed for world in server.control.call(list_worlds=c.ListWorlds()).worlds.worlds)
             snapshots = sum(viewer.snapshots for viewer in viewers) - seen
             readers.stop()
-            figures[name] = {"real_time_share": {"least": min(shares), "mean": sum(shares) / count}, "slowed_worlds": slowed,
+            figures[name] = {"real_time_share": {"least": min(shares), "mean": sum(shares) / count},
+                             "slowed_worlds": slowed,
                              "snapshots_per_s": snapshots / passed_s / max(watched, 1),
                              "cpu_share": {thread: (used_after[thread] - used[thread]) / passed_s for thread in used}}
             for viewer in viewers:

@@ -3,10 +3,10 @@
     documents_test.py DOCUMENT [-v]      skipped with status 77 where no network of its own may be made
 
 The folder looks like that of the sources, and build/release in it is the environment's BUILD, whose programs are on the
-path and whose Python package can be imported. HOME is above it, and the network is the document's own, so that every port is
-free and nothing comes from outside; as root there the test can mount folders in a namespace of its own.
+path and whose Python package can be imported. HOME is above it, and the network is the document's own, so that every
+port is free and nothing comes from outside; as root there the test can mount folders in a namespace of its own.
 
-    ```sh       all of them are run by one bash, so a variable, a folder, a server in the background is there for the next.
+    ```sh       all of them are run by one bash, so variables, folders and servers in the background stay.
                 Every command has to succeed.
     ```python   a program of its own, in the folder that bash is in
     ```sql      what sqlite3 is asked, of default.evod in that folder; each question has to have an answer
@@ -16,8 +16,8 @@ Other blocks are not run. HTML comments before a block, which readers of the pag
 
     <!-- not run: REASON -->       it needs what a test lacks: root, a window, a person. They are counted and printed
     <!-- ends with status N -->    that is what its last command is for
-    <!-- before: CODE -->          goes before it, in its language, of sql in sh: what its reader has done, or has anyway
-    <!-- varies: REGEX -->         of a ```text: each match stands for any other, as evod's version always does; the rest is
+    <!-- before: CODE -->          goes before it, in its language, of sql in sh: what its reader has done
+    <!-- varies: REGEX -->         of a ```text: each match stands for any other, as evod's version does; the rest is
                                    compared letter by letter
 """
 import collections
@@ -59,7 +59,8 @@ RUN = re.compile(r"^\s*```(?:sh|python|sql|text)\b", re.M)
 PARTS = re.compile(r"^<!--\s*(?P<mark>not run|ends with status|before|varies):?\s+(?P<value>.*?)\s*-->$"
                    r"|^```(?P<language>\w+)\n(?P<text>.*?)^```$"
                    r"|^```\n.*?^```$", re.M | re.S)
-FOR = {"not run": {"sh", "python", "sql"}, "ends with status": {"sh"}, "before": {"sh", "python", "sql"}, "varies": {"text"}}
+FOR = {"not run": {"sh", "python", "sql"}, "ends with status": {"sh"}, "before": {"sh", "python", "sql"},
+       "varies": {"text"}}
 
 
 def blocks_of(document):
@@ -114,18 +115,23 @@ class Reader:
         shutil.copytree(ROOT / "client/python", work / "client/python", ignore=made)
         (work / "build/release").symlink_to(os.environ["BUILD"])
         environment = {"PATH": os.environ["BUILD"] + "/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": str(self.home),
-                       "PYTHONPATH": os.environ["BUILD"] + "/python", "LC_ALL": "C.UTF-8", "TZ": "UTC", "TMPDIR": str(folder),
+                       "PYTHONPATH": os.environ["BUILD"] + "/python", "LC_ALL": "C.UTF-8", "TZ": "UTC",
+                       "TMPDIR": str(folder),
                        "MPLBACKEND": "Agg", "MPLCONFIGDIR": os.environ["BUILD"] + "/matplotlib"}
-        if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():  # the search for fonts prints a warning if it takes long, so it is done here
-            subprocess.run(["/usr/bin/python3", "-c", "import matplotlib.font_manager"], env=environment, capture_output=True)
+        # the search for fonts prints a warning if it takes long, so it is done here
+        if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():
+            subprocess.run(["/usr/bin/python3", "-c", "import matplotlib.font_manager"], env=environment,
+                           capture_output=True)
         self.bash = subprocess.Popen(["bash", "--norc", "--noprofile"], cwd=work, env=environment, umask=0o022,
-                                     start_new_session=True, text=True, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                     start_new_session=True, text=True, stdin=subprocess.PIPE,
+                                     stdout=subprocess.DEVNULL,
                                      stderr=subprocess.DEVNULL)
         self.count = 0
 
     def close(self):
         """Nothing that a block began outlives its document."""
-        with contextlib.suppress(ProcessLookupError):  # a bash in which a command failed has ended, perhaps with all others
+        # a bash in which a command failed has ended, perhaps with all others
+        with contextlib.suppress(ProcessLookupError):
             os.killpg(self.bash.pid, signal.SIGKILL)
         self.bash.communicate()
 
@@ -150,10 +156,12 @@ class Reader:
         else:
             how = f"set -o pipefail {'+e' if status else '-e'}; . {program}"
         self.before = self.in_background()
-        self.bash.stdin.write(f"{how} >{said} 2>&1 </dev/null; echo $? >{ended}.part; set +e; mv {ended}.part {ended}\n")
+        self.bash.stdin.write(
+            f"{how} >{said} 2>&1 </dev/null; echo $? >{ended}.part; set +e; mv {ended}.part {ended}\n")
         self.bash.stdin.flush()
         try:
-            waiting.until(lambda: ended.exists() or self.bash.poll() is not None, "the end of the block", longest_s=math.inf)
+            waiting.until(lambda: ended.exists() or self.bash.poll() is not None, "the end of the block",
+                          longest_s=math.inf)
         except AssertionError as wrong:
             raise Wrong(f"{wrong}; it said\n{said.read_text(errors='replace')}") from None
         got = int(ended.read_text()) if ended.exists() else self.bash.returncode
@@ -163,7 +171,8 @@ class Reader:
 
 
 def compare(block, said, more_may_come):
-    """Waits until the output is what the document shows: what runs in the background may be slower than who started it."""
+    """Waits until the output is what the document shows: what runs in the background may be slower than who started
+    it."""
     expected = pattern(block.text, block.marks.get("varies"))
     matched, text = None, ""
 

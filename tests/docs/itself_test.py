@@ -37,7 +37,8 @@ class Documents(unittest.TestCase):
 
     def test_a_block_has_what_those_before_it_left(self):
         self.right(block("sh", "word=left", "mkdir there && cd there") + block("sh", "echo $word in $(basename $PWD)") +
-                   block("text", "left in there") + block("python", "import os", "print(os.path.basename(os.getcwd()))") +
+                   block("text", "left in there") + block("python", "import os",
+                                                          "print(os.path.basename(os.getcwd()))") +
                    block("text", "there"), "2 sh blocks", "1 python blocks", "2 outputs compared")
 
     def test_every_command_has_to_succeed(self):

@@ -15,7 +15,8 @@ from support import until
 
 class Connect(unittest.TestCase):
     def test_addresses_are_parsed(self):
-        for text, host, port in (("lab", "lab", 7744), ("lab:1", "lab", 1), ("::1", "::1", 7744), ("[::1]:65535", "::1", 65535)):
+        for text, host, port in (("lab", "lab", 7744), ("lab:1", "lab", 1), ("::1", "::1", 7744),
+                                 ("[::1]:65535", "::1", 65535)):
             self.assertEqual(Endpoint.parse(text), Endpoint(host, port))
         for text in ("", ":1", "lab:", "lab:0", "lab:65536", "lab:x", "lab:1²", "[::1", "[::1]x", "[::1]:"):
             with self.assertRaisesRegex(evod.Error, "server: got .*, allowed HOST, HOST:PORT"):
@@ -36,7 +37,8 @@ class Connect(unittest.TestCase):
                     connection.sendall(b"220 mail.example ESMTP\r\n")
                     connection.recv(100)
             threading.Thread(target=greet).start()
-            with self.assertRaisesRegex(evod.DamagedData, "is not an evod server: a frame begins with 32 32, not with 45 56"):
+            with self.assertRaisesRegex(evod.DamagedData, "is not an evod server: a frame begins with 32 32, not with "
+                                                          "45 56"):
                 evod.connect("127.0.0.1:%d" % other.getsockname()[1])
 
     def test_a_local_server_ends_with_a_killed_program(self):

@@ -13,7 +13,8 @@ class CoreTestCase(unittest.TestCase):
         """A core whose server has sent its Welcome."""
         core = Core(token="", client_name="test", server="lab:1")
         core.opened()
-        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=4, control_frame_bytes_max=500))
+        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=4,
+                                                                          control_frame_bytes_max=500))
         core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
         core.outgoing()
         return core

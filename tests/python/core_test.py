@@ -29,7 +29,8 @@ class CoreTest(CoreTestCase):
                 pass
 
     def test_frames_are_assembled_from_any_pieces(self):
-        message = session_pb2.ServerMessage(event=stream_pb2.Event(world="a", server_going_away=stream_pb2.ServerGoingAway()))
+        message = session_pb2.ServerMessage(event=stream_pb2.Event(world="a",
+                                                                   server_going_away=stream_pb2.ServerGoingAway()))
         data = framing.encode(message.SerializeToString()) * 3
         for size in (1, 3, 7, 1000):
             reader, bodies = framing.FrameReader(), []

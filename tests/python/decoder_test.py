@@ -15,7 +15,8 @@ from evod.v1 import commands_pb2 as c, stream_pb2
 
 from core_support import CoreTestCase
 
-BUSY = {"population_size": 300, "island_width_px": 3000, "island_height_px": 3000, "food_count": 400, "poison_count": 300,
+BUSY = {"population_size": 300, "island_width_px": 3000, "island_height_px": 3000, "food_count": 400,
+        "poison_count": 300,
         "crate_count": 10, "obstacle_count": 5, "generation_s": 5, "respawn_s": 0.2}
 
 
@@ -58,9 +59,11 @@ class Decoder(CoreTestCase):
             with world.snapshots(1) as snapshots:  # the same state again, plain
                 cls.same = next(snapshots)
             found, take = [], lab._link.core._take_snapshot
-            lab._link.core._take_snapshot = lambda message: found.append(message) if message.codec == stream_pb2.CODEC_PLAIN else take(message)
+            lab._link.core._take_snapshot = lambda message: found.append(
+                message) if message.codec == stream_pb2.CODEC_PLAIN else take(message)
             plain = c.SubscribeSnapshots(world=world.name, rate_hz=1)
-            held = lab._link.core.subscribe(c.Request(subscribe_snapshots=plain))  # a collected subscription would be unsubscribed
+            # a collected subscription would be unsubscribed
+            held = lab._link.core.subscribe(c.Request(subscribe_snapshots=plain))
             while not found:
                 world.info()
             (cls.plain,) = found
@@ -139,7 +142,8 @@ class Decoder(CoreTestCase):
     # ---- headings ----------------------------------------------------------------------------------------------------
 
     def of_one_organism(self, sequence, count, organisms):
-        """A delta (if sequence is 1, a keyframe) of an island, and the same of its only tile. `organisms`: their section."""
+        """A delta (if sequence is 1, a keyframe) of an island, and the same of its only tile. `organisms`: their
+        section."""
         part = {"sequence": sequence, "base_sequence": sequence - 1, "organism_count": count,
                 "body": b"\1\0" + organisms + b"\0\0\0\0"}
         frame = {"codec": stream_pb2.CODEC_DELTA, "position_bytes": 2, "width_px": 100, "height_px": 100}
@@ -173,7 +177,8 @@ class Decoder(CoreTestCase):
         of_food = bytearray(self.of_one_organism(1, 0, b"\0")[0].body)
         of_food[3] = 4
         with self.assertRaisesRegex(evod.DamagedData, "parts of food are 4, allowed: 0 to 3"):
-            snapshot_decoder.SnapshotDecoder().decode(self.resealed(self.of_one_organism(1, 0, b"\0")[0], bytes(of_food)))
+            snapshot_decoder.SnapshotDecoder().decode(self.resealed(self.of_one_organism(1, 0, b"\0")[0],
+                                                                    bytes(of_food)))
 
     def test_headings_decode_as_in_the_reference_decoder(self):
         few = {"controller": "network", "brain_hidden": 1, "population_size": 12, "generation_s": 30,
@@ -207,7 +212,8 @@ class Decoder(CoreTestCase):
             snapshot, seen = decoder.decode(message), reference.decode(message)
             there = [content["organisms"] for content in seen.values() if len(content["organisms"]["id"])]
             if there:
-                ids, headings = (numpy.concatenate([organisms[field] for organisms in there]) for field in ("id", "heading"))
+                ids, headings = (numpy.concatenate([organisms[field] for organisms in there])
+                                 for field in ("id", "heading"))
                 steps = numpy.rint(snapshot.organisms.headings * 128 / numpy.pi) % 256
                 numpy.testing.assert_array_equal(steps, headings[numpy.argsort(ids)])
 
@@ -253,7 +259,8 @@ class Decoder(CoreTestCase):
         keyframe, delta = self.deltas[0], self.deltas[1]
         self.assertNotEqual(delta.base_sequence, 0)
         wrong = {
-            "position_bytes": (0, 1, 3, 8), "codec": (0, 1, 99), "compression": (1 if keyframe.compression == 2 else 2, 3),
+            "position_bytes": (0, 1, 3, 8), "codec": (0, 1, 99),
+                 "compression": (1 if keyframe.compression == 2 else 2, 3),
             "checksum": (0,), "organism_count": (0, 2**32 - 1), "obstacle_count": (1, 2**31), "body": (b"", b"\0" * 50),
         }
         for field, values in wrong.items():
@@ -309,7 +316,8 @@ class Decoder(CoreTestCase):
         self.assertEqual(core.damaged_snapshot_count, 1)
 
     def test_wrong_tile_fields_are_refused(self):
-        wrong = (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999))
+        wrong = (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1),
+                 ("organism_count", 9999))
         for field, value in wrong:
             message = copy.deepcopy(self.full[0])
             setattr(message.tiles[0], field, value)

@@ -39,7 +39,8 @@ def rastrigin(genes, life):
 
 
 ANGLES = numpy.random.default_rng(5).permutation(20) * numpy.pi / 10
-CITIES = numpy.stack([numpy.cos(ANGLES), numpy.sin(ANGLES)], axis=1)  # the corners of a polygon of 20 sides, in a random order
+# the corners of a polygon of 20 sides, in a random order
+CITIES = numpy.stack([numpy.cos(ANGLES), numpy.sin(ANGLES)], axis=1)
 
 
 def tour(genes, life):
@@ -118,13 +119,15 @@ class Evaluate(unittest.TestCase):
         names = world.info().gene_names
         self.assertEqual((len(names), names[6], names[-1]), (83, "hidden1<food_bearing", "free39"))
         groups = world.info().gene_groups
-        self.assertEqual((groups[5], groups[6], groups[82]), (evod.GeneGroup.BODY, evod.GeneGroup.BRAIN, evod.GeneGroup.FREE))
+        self.assertEqual((groups[5], groups[6], groups[82]),
+                         (evod.GeneGroup.BODY, evod.GeneGroup.BRAIN, evod.GeneGroup.FREE))
         ended = list(world.run(generations=3))
         history, table = world.history(), world.table("generations")
         self.assertEqual(set(history.to_pandas().columns), set(table.columns))
         self.assertEqual(ended[2].genes.names, names)
         self.assertEqual(ended[2].islands[0].genes["free39"], history[2].islands[0].genes["free39"])
-        self.assertAlmostEqual(float(history[2].change["free39"]), history[2].genes["free39"] - history[1].genes["free39"])
+        self.assertAlmostEqual(float(history[2].change["free39"]),
+                               history[2].genes["free39"] - history[1].genes["free39"])
         self.assertEqual(world.statistics().last[0].genes["turn<bias"], history[2].islands[0].genes["turn<bias"])
         population = world.population()
         self.assertEqual((population.genes.shape, population.genes.names), ((12, 83), names))
@@ -227,7 +230,8 @@ class Evaluate(unittest.TestCase):
         with concurrent.futures.ThreadPoolExecutor(3) as pool:
             lengths = list(pool.map(evaluate, range(3)))
         ended = world.info().generation
-        self.assertLessEqual(ended, 90)  # each client asks for thirty generations more from the moment at which it begins
+        # each client asks for thirty generations more from the moment at which it begins
+        self.assertLessEqual(ended, 90)
         self.assertTrue(all(30 <= length <= ended for length in lengths), lengths)
         self.assertEqual([g.number for g in world.history()], list(range(1, ended + 1)))
         verify(self.data.name, "shared")
@@ -278,7 +282,8 @@ class Kills(unittest.TestCase):
 
     def start_client(self):
         here = os.path.dirname(os.path.abspath(__file__))
-        self.client = subprocess.Popen([sys.executable, "-c", textwrap.dedent(CLIENT), self.relay.address, "100000", here],
+        self.client = subprocess.Popen([sys.executable, "-c", textwrap.dedent(CLIENT), self.relay.address, "100000",
+                                        here],
                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         self.client.stdout.readline()
 
@@ -321,7 +326,8 @@ class Kills(unittest.TestCase):
                 self.assertEqual(mine.islands, theirs.islands)
         self.server.end()
         with contextlib.closing(sqlite3.connect(f"file:{self.data}/long.evod?mode=ro", uri=True)) as run:
-            twice = run.execute("SELECT client_key, request_id FROM journal GROUP BY 1, 2 HAVING count(*) > 1").fetchall()
+            twice = run.execute(
+                "SELECT client_key, request_id FROM journal GROUP BY 1, 2 HAVING count(*) > 1").fetchall()
             self.assertEqual(twice, [])
             messages = [c.Request.FromString(row[0]) for row in run.execute("SELECT request FROM journal")]
         numbers = [(m.set_fitness.generation, m.set_fitness.island) for m in messages if m.HasField("set_fitness")]

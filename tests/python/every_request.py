@@ -61,7 +61,8 @@ async def send_every_request(lab):
     assert (await first(events)).parameters_changed.changed[0].name == "mutation_chance"
     await result(events.close())
     planned = await result(world.set(mutation_step=9.0, at_generation=50))
-    assert planned.change.id == 1 and planned.change.generation == 50 and planned.change.values == {"mutation_step": 9.0}
+    assert planned.change.id == 1 and planned.change.generation == 50
+    assert planned.change.values == {"mutation_step": 9.0}
     assert planned.planned == (planned.change,)
     later = (await result(world.set(food_health=9.0, at_tick=10**6))).change
     assert later.tick == 10**6 and later.generation is None

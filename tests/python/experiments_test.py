@@ -21,13 +21,15 @@ SMALL = {"population_size": 12, "generation_s": 2}
 
 
 def program(*arguments, **options):
-    return subprocess.run([os.environ["EVOD"], *arguments], check=True, capture_output=True, text=True, **options).stdout
+    return subprocess.run([os.environ["EVOD"], *arguments], check=True, capture_output=True, text=True,
+                          **options).stdout
 
 
 class Run(Temporary):
     def test_a_run_is_that_of_the_program(self):
         path = self.file("small.json", {**SMALL, "seed": 9, "mutation_chance": {"1": 0.5, "3": 0.1}})
-        program("run", str(path), "--generations", "4", "--set", "selection=random", "--csv", str(self.folder / "x.csv"))
+        program("run", str(path), "--generations", "4", "--set", "selection=random", "--csv",
+                str(self.folder / "x.csv"))
         with evod.run(path, generations=4, selection="random") as run:
             table, expected = run.generations(), pandas.read_csv(self.folder / "x.csv", float_precision="round_trip")
             self.assertEqual(run.seed, 9)
@@ -91,7 +93,8 @@ class Sweep(Temporary):
 
     def test_a_cancelled_sweep_stops_the_program(self):
         script = self.folder / "evod"
-        script.write_text(f"#!/bin/sh\necho $$ >{self.folder}/pid.new; mv {self.folder}/pid.new {self.folder}/pid; exec sleep 600\n")
+        script.write_text(f"#!/bin/sh\necho $$ >{self.folder}/pid.new; mv {self.folder}/pid.new {self.folder}/pid; "
+                          "exec sleep 600\n")
         script.chmod(0o700)
 
         async def cancel():
@@ -107,7 +110,8 @@ class Sweep(Temporary):
             os.kill(int((self.folder / "pid").read_text()), 0)
 
     def test_wrong_arguments_are_named(self):
-        self.refused(lambda: evod.sweep(SMALL, grid={"selecton": ["random"]}, replicates=0, generations=1, fitness="best"),
+        self.refused(lambda: evod.sweep(SMALL, grid={"selecton": ["random"]}, replicates=0, generations=1,
+                                        fitness="best"),
                      "replicates", "grid.selecton", "experiment.fitness")
         self.refused(lambda: evod.sweep(SMALL, generations=1), "grid")
         self.refused(lambda: evod.sweep(SMALL, grid={"mutation_chance": [0.1]}, generations=1, jobs=0), "jobs")
@@ -144,7 +148,8 @@ class Compare(Temporary):
         self.assertEqual([difference.other for difference in compared.differences], ["rough"])
         self.assertEqual(len(compared.fitness), 8)
         (self.folder / "other").mkdir()
-        same = evod.compare(calm, self.file("other/calm.json", SMALL), replicates=2, generations=2, seed=1, selection="random")
+        same = evod.compare(calm, self.file("other/calm.json", SMALL), replicates=2, generations=2, seed=1,
+                            selection="random")
         self.assertNotEqual(same.worlds[0].first, same.worlds[1].first)
         named = evod.compare(calm, SMALL, replicates=2, generations=2, seed=1)
         self.assertEqual([world.name for world in named.worlds], ["calm", "experiment_2"])
@@ -202,7 +207,8 @@ class Progress(unittest.TestCase):
         seen = []
         with tempfile.TemporaryDirectory() as folder:
             script = pathlib.Path(folder) / "evod"
-            lines = ("#!/bin/sh", """echo '{"progress":0.5}'""", """echo '{"progress":0.75}'""", "echo 'evod x: --seed: bad' >&2",
+            lines = ("#!/bin/sh", """echo '{"progress":0.5}'""", """echo '{"progress":0.75}'""",
+                     "echo 'evod x: --seed: bad' >&2",
                      "exit 1", "")
             script.write_text("\n".join(lines))
             script.chmod(0o700)

@@ -12,7 +12,8 @@ class GenerateSync(unittest.TestCase):
         self.assertEqual(synchronous(source + "\n"), expected + "\n")
 
     def test_async_and_await_are_removed(self):
-        self.assert_becomes("async def f():\n    async with a as b:\n        await b", "def f():\n    with a as b:\n        b")
+        self.assert_becomes("async def f():\n    async with a as b:\n        await b",
+                            "def f():\n    with a as b:\n        b")
 
     def test_parentheses_around_await_are_removed(self):
         self.assert_becomes("return (await f(x, (1, 2))).y", "return f(x, (1, 2)).y")

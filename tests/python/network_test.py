@@ -17,7 +17,8 @@ NETWORK = {"controller": "network", "brain_hidden": 4, "sense_speed": True, "gen
            "survivors": 0}
 LAYERS = ([f"hidden{h}<{source}" for h in range(1, 5)
            for source in ("food_bearing", "food_proximity", "poison_bearing", "poison_proximity", "speed", "bias")] +
-          [f"{out}<{source}" for out in ("thrust", "turn") for source in ("hidden1", "hidden2", "hidden3", "hidden4", "bias")])
+          [f"{out}<{source}" for out in ("thrust", "turn") for source in ("hidden1", "hidden2", "hidden3", "hidden4",
+                                                                          "bias")])
 
 
 def network_of(weights, brain):
@@ -77,7 +78,8 @@ class Network(unittest.TestCase):
             for mutation in child.mutations:
                 expected[mutation.gene] = mutation.after
             numpy.testing.assert_array_equal(child.genes, expected)
-        self.assertTrue(any(child.from_second >> 32 for child in children), "no gene after the 32nd is of a second parent")
+        self.assertTrue(any(child.from_second >> 32 for child in children),
+                        "no gene after the 32nd is of a second parent")
 
     def test_snapshots_contain_the_headings(self):
         with self.world.snapshots(60) as snapshots:
@@ -120,7 +122,8 @@ class Network(unittest.TestCase):
             organism = self.world.organism(int(id))
             brain = organism.brain
             self.assertEqual(organism.choice, evod.Choice.STEER)
-            self.assertEqual(brain.input_names, ("food_bearing", "food_proximity", "poison_bearing", "poison_proximity", "speed"))
+            self.assertEqual(brain.input_names, ("food_bearing", "food_proximity", "poison_bearing", "poison_proximity",
+                                                 "speed"))
             self.assertEqual((brain.output_names, brain.has_bias), (("thrust", "turn"), True))
             speed = numpy.hypot(organism.velocity_x_px_s, organism.velocity_y_px_s)
             self.assertAlmostEqual(brain.inputs[4], speed / self.world.parameters.max_speed_px_s, places=5)

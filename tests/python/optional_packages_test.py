@@ -17,7 +17,8 @@ class OptionalPackages(unittest.TestCase):
 
     def test_missing_packages_are_named(self):
         for package, program in (("pandas", "world.history().to_pandas()"), ("pandas", "world.snapshot().to_pandas()"),
-                                 ("pandas", "evod.run(seed=1, generations=1).generations()"), ("matplotlib", "world.plot()")):
+                                 ("pandas", "evod.run(seed=1, generations=1).generations()"),
+                                 ("matplotlib", "world.plot()")):
             done = self.run_without(package, program)
             self.assertIn(f"need the package {package}: install it, python3-{package} on Debian", done.stderr)
 

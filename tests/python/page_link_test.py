@@ -19,7 +19,8 @@ class Form(unittest.TestCase):
     def test_the_page_has_the_host_of_server_or_client(self):
         for fields, server, tls, page in (({}, Endpoint("lab"), False, "http://lab:7745/"),
                                           ({}, Endpoint("::1"), True, "https://[::1]:7745/"),
-                                          ({"page_host": "192.0.2.1"}, Endpoint("lab"), False, "http://192.0.2.1:7745/")):
+                                          ({"page_host": "192.0.2.1"}, Endpoint("lab"), False,
+                                           "http://192.0.2.1:7745/")):
             self.assertEqual(page_link.page_of(session_pb2.Welcome(page_port=7745, **fields), server, tls), page)
 
     def test_another_host_causes_a_warning(self):
@@ -35,7 +36,8 @@ class Form(unittest.TestCase):
             with self.assertRaises(evod.DamagedData):
                 page_link.page_of(session_pb2.Welcome(page_port=7745, page_host=host), Endpoint("lab"), False)
         with self.assertRaises(evod.DamagedData):
-            page_link.link_of("http://x/", world_pb2.WorldInfo(name="\x1b[2J", generation=3), None, None, None, None, live=False)
+            page_link.link_of("http://x/", world_pb2.WorldInfo(name="\x1b[2J", generation=3), None, None, None, None,
+                              live=False)
 
     def test_a_replay_is_a_moment_of_its_original(self):
         info = world_pb2.WorldInfo(name="a.replay", generation=3, generation_tick=40)
@@ -45,7 +47,8 @@ class Form(unittest.TestCase):
 
     def test_mistakes_are_named(self):
         info = world_pb2.WorldInfo(name="a", generation=3)
-        for arguments, words in (((9, None), "generation: got 9, allowed 1 to 3"), ((None, 9), "tick is given without generation")):
+        for arguments, words in (((9, None), "generation: got 9, allowed 1 to 3"),
+                                 ((None, 9), "tick is given without generation")):
             with self.assertRaisesRegex(evod.InvalidArgument, words):
                 page_link.link_of("http://x/", info, *arguments, None, None, live=False)
         for page in "lab", "http://a/#b", 'http://a/"', "ftp://a/":
@@ -77,7 +80,8 @@ class Links(unittest.TestCase):
         page = self.page[1]
         for arguments, words, end in (
                 ({}, [], "#world=default&generation=3&tick=70"),
-                ({"generation": 2, "tick": 5}, ["--generation", "2", "--tick", "5"], "#world=default&generation=2&tick=5"),
+                ({"generation": 2, "tick": 5}, ["--generation", "2", "--tick", "5"],
+                 "#world=default&generation=2&tick=5"),
                 ({"generation": 1, "organism": 7}, ["--generation", "1", "--organism", "7"],
                  "#world=default&generation=1&tick=0&island=0&organism=7"),
                 ({"live": True, "island": 0}, ["--live", "--island", "0"], "#world=default&island=0")):
@@ -85,10 +89,12 @@ class Links(unittest.TestCase):
                 self.assertEqual(world.link(**arguments), page + end)
                 self.assertEqual(self.evoctl(*words), page + end)
         self.assertEqual(world.link(live=True, page="https://x.example/evod"), "https://x.example/evod/#world=default")
-        self.assertEqual(self.evoctl("--live", "--page", "https://x.example/evod"), "https://x.example/evod/#world=default")
+        self.assertEqual(self.evoctl("--live", "--page", "https://x.example/evod"),
+                         "https://x.example/evod/#world=default")
 
     def test_a_server_without_a_page_is_named(self):
-        with evod.local() as lab, self.assertRaisesRegex(evod.FailedPrecondition, "has no page .*: start it with --web"):
+        with evod.local() as lab, self.assertRaisesRegex(evod.FailedPrecondition,
+                                                         "has no page .*: start it with --web"):
             lab.world().link()
 
 

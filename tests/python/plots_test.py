@@ -32,10 +32,12 @@ class Plots(unittest.TestCase):
             numpy.testing.assert_allclose(mean.get_ydata(), [g.mean for g in generations])
             numpy.testing.assert_allclose(best.get_ydata(), [g.best for g in generations])
             genes = world.plot_genes().lines
-            numpy.testing.assert_allclose([line.get_ydata() for line in genes], numpy.array([g.genes for g in generations]).T)
+            numpy.testing.assert_allclose([line.get_ydata() for line in genes],
+                                          numpy.array([g.genes for g in generations]).T)
 
     def test_selection_plots_show_all_islands(self):
-        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
+        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring",
+                      "migration_epoch": 1}
         with tempfile.TemporaryDirectory() as folder:
             with evod.local(seed=3, experiment=experiment, data=folder) as lab:
                 world = lab.world()
@@ -60,7 +62,8 @@ class Plots(unittest.TestCase):
         self.assertEqual(list(table["body_size_change"].isna()), [True, True] + [False] * 6)
 
     def test_a_lineage_is_a_tree_of_those_with_descendants(self):
-        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
+        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring",
+                      "migration_epoch": 1}
         with tempfile.TemporaryDirectory() as folder:
             with evod.local(seed=3, experiment=experiment, data=folder) as lab:
                 lab.world().run(8).wait()
@@ -86,7 +89,8 @@ class Plots(unittest.TestCase):
         second, first, points, *_ = of_one.collections
         self.assertEqual(len(points.get_offsets()), len(ancestors))
         both = ancestors[ancestors["generation"] > 1]
-        crossed = both[(both["parent_first"] != both["parent_second"]) | (both["parent_first_island"] != both["parent_second_island"])]
+        crossed = both[(both["parent_first"] != both["parent_second"]) |
+                       (both["parent_first_island"] != both["parent_second_island"])]
         self.assertEqual(len(first.get_segments()), len(both))
         self.assertEqual(len(second.get_segments()), len(crossed))
 

@@ -28,7 +28,8 @@ class Conversion(unittest.TestCase):
         for name, state in STATES.items():
             module = next(m for m in (world_pb2, commands_pb2) if name in m.DESCRIPTOR.enum_types_by_name)
             values = {v.name: v.number for v in module.DESCRIPTOR.enum_types_by_name[name].values if v.number}
-            prefix = len(min(values, key=len)) and "".join("_" + c if c.isupper() else c.upper() for c in name)[1:] + "_"
+            prefix = len(min(values, key=len)) and "".join("_" + c if c.isupper() else c.upper()
+                                                           for c in name)[1:] + "_"
             self.assertEqual({prefix + member.name: member.value for member in state}, values)
         details = {v.name: v.number for v in stream_pb2.Detail.DESCRIPTOR.values if v.number}
         self.assertEqual({f"DETAIL_{member.name}": member.value for member in evod.Detail}, details)
@@ -91,7 +92,8 @@ class Results(unittest.TestCase):
 
     def test_queries_return_frozen_dataclasses(self):
         world = self.world
-        for made, kind in ((world.info(), evod.WorldInfo), (world.statistics(), evod.Statistics), (world.motion(), evod.Motion),
+        for made, kind in ((world.info(), evod.WorldInfo), (world.statistics(), evod.Statistics),
+                           (world.motion(), evod.Motion),
                            (world.organism(1), evod.OrganismInfo), (world.breeding(), evod.Breeding),
                            (self.lab.worlds()[0], evod.WorldInfo), (world.set_speed("max"), evod.WorldInfo)):
             self.assertIs(type(made), kind)
@@ -144,7 +146,8 @@ class Snapshots(unittest.TestCase):
         snapshot = self.lab.world().snapshot()
         organisms = snapshot.organisms
         numpy.testing.assert_array_equal(organisms.positions, numpy.stack((organisms.x_px, organisms.y_px), axis=1))
-        self.assertEqual(organisms[3], (3, organisms.x_px[3], organisms.y_px[3], organisms.radius_px[3], organisms.health[3]))
+        self.assertEqual(organisms[3], (3, organisms.x_px[3], organisms.y_px[3], organisms.radius_px[3],
+                                        organisms.health[3]))
         self.assertEqual([organism.id for organism in organisms][-1], organisms[-1].id)
         left = organisms[organisms.x_px < 600]
         self.assertEqual(left.id.tolist(), organisms.id[organisms.x_px < 600].tolist())
@@ -219,7 +222,8 @@ class Notebooks(unittest.TestCase):
             world = lab.world()
             run = world.run(1)
             run.wait()
-            for thing, text in ((lab, lab.address), (world, "run_id"), (run, "default"), (world.snapshot(), "generation"),
+            for thing, text in ((lab, lab.address), (world, "run_id"), (run, "default"),
+                                (world.snapshot(), "generation"),
                                 (world.parameters, "mutation_chance"), (world.snapshot().food, "x_px")):
                 self.assertIn("<table>", thing._repr_html_())
                 self.assertIn(text, thing._repr_html_())

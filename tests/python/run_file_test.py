@@ -34,7 +34,8 @@ class RunFiles(unittest.TestCase):
             world.run(3).wait()
             world.set(mutation_chance=0.4, elite_count=1)
             world.run(4).wait()
-            islands = lab.create_world("islands", {**SMALL, "island_count": 3, "migration": "ring", "migration_epoch": 1},
+            islands = lab.create_world("islands", {**SMALL, "island_count": 3, "migration": "ring",
+                                                   "migration_epoch": 1},
                                        seed=2, speed="max")
             islands.run(3).wait()
             with evod.open_run(cls.path) as run:  # while the server has it open
@@ -50,7 +51,8 @@ class RunFiles(unittest.TestCase):
                     self.assertGreater(len(ours), 0)
                     if table == "events":  # Python and evod format the same JSON differently
                         ours, theirs = ours.drop(columns="request"), theirs.drop(columns="request")
-                    pandas.testing.assert_frame_equal(ours, theirs, check_exact=True, check_dtype=False, obj=f"{name}, {table}")
+                    pandas.testing.assert_frame_equal(ours, theirs, check_exact=True, check_dtype=False,
+                                                      obj=f"{name}, {table}")
                 pandas.testing.assert_frame_equal(run.lineage((2, 0, 3)), exported(path, "lineage", "--of", "2:0:3"))
                 pandas.testing.assert_frame_equal(run.population(2), exported(path, "population", "--generation", "2"))
 
@@ -58,7 +60,8 @@ class RunFiles(unittest.TestCase):
         with evod.open_run(self.path) as run:
             for table, expected in self.tables.items():
                 if table != "events":
-                    pandas.testing.assert_frame_equal(getattr(run, table)(), expected, check_exact=True, check_dtype=False)
+                    pandas.testing.assert_frame_equal(getattr(run, table)(), expected, check_exact=True,
+                                                      check_dtype=False)
 
     def test_properties_describe_the_run(self):
         with evod.open_run(self.path) as run:
@@ -92,7 +95,8 @@ class RunFiles(unittest.TestCase):
     def test_other_files_are_refused(self):
         with self.assertRaisesRegex(evod.Error, "there is no run file .*/no.evod"):
             evod.open_run(self.folder / "no.evod")
-        for name, content in (("empty.evod", b""), ("text.evod", b"generation,island\n" * 1000), ("zero.evod", bytes(8192))):
+        for name, content in (("empty.evod", b""), ("text.evod", b"generation,island\n" * 1000),
+                              ("zero.evod", bytes(8192))):
             (self.folder / name).write_bytes(content)
             with self.assertRaisesRegex(evod.DamagedData, f"{name} is not a run file"):
                 evod.open_run(self.folder / name)
@@ -123,7 +127,8 @@ class RunFiles(unittest.TestCase):
             file.close()
             with evod.open_run(path) as run, self.assertRaises(evod.DamagedData):
                 run.organisms()
-        with evod.open_run(self.path) as run, self.assertRaisesRegex(evod.Error, "generation: got 99, allowed in .*: 1 to 7"):
+        with evod.open_run(self.path) as run, self.assertRaisesRegex(evod.Error,
+                                                                     "generation: got 99, allowed in .*: 1 to 7"):
             run.genes(99)
 
     def test_reading_changes_nothing(self):

@@ -11,7 +11,8 @@ README = pathlib.Path(__file__).resolve().parents[2] / "client/python/README.md"
 SECTION = README.read_text().split("\n## Three scripts\n")[1].split("\n## ")[0]
 SCRIPTS = re.findall(r"^```python\n(.*?)^```$", SECTION, re.MULTILINE | re.DOTALL)
 SMALLER = {"replicates=10, generations=40": "replicates=2, generations=3", "speed=40": "speed=400",
-           "generations=3)": "generations=1)", "generations=20)": "generations=2)", "at_generation=20": "at_generation=2",
+           "generations=3)": "generations=1)", "generations=20)": "generations=2)",
+           "at_generation=20": "at_generation=2",
            "at_generation=21": "at_generation=3", "generations=21)": "generations=3)", "range(1, 9)": "range(1, 4)"}
 
 

@@ -1,5 +1,5 @@
-"""The scenarios of proto/vectors/sessions.json, performed with a Core. The file explains its steps. And other objects that a
-forked process has inherited."""
+"""The scenarios of proto/vectors/sessions.json, performed with a Core. The file explains its steps. And other objects
+that a forked process has inherited."""
 import json
 import os
 import pathlib
@@ -160,7 +160,8 @@ class Player:
         (kind,) = value["fields"]
         result = in_forked_process(lambda: call(lambda: client.perform(plans.request(kind, **value["fields"][kind]))))
         self.test.assertEqual(result, value["result"])
-        self.test.assertEqual(in_forked_process(lambda: str(client.apply(lambda: None)) + str(client.close())), "NoneNone")
+        self.test.assertEqual(in_forked_process(lambda: str(client.apply(lambda: None)) + str(client.close())),
+                              "NoneNone")
 
     # ---- expectations
 

@@ -43,7 +43,8 @@ class Generations(unittest.TestCase):
         self.assertEqual([g.number for g in self.world.history(2, 3)], [2, 3])
 
     def test_a_generation_contains_all_islands(self):
-        world = self.lab.create_world("islands", {"island_count": 3, "population_size": 12, "generation_s": 2}, speed="max")
+        world = self.lab.create_world("islands", {"island_count": 3, "population_size": 12, "generation_s": 2},
+                                      speed="max")
         (g,) = world.run(1)
         self.assertEqual([island.island for island in g.islands], [0, 1, 2])
         self.assertEqual(g.best, max(island.fitness_best for island in g.islands))
@@ -131,7 +132,8 @@ class Damage(unittest.TestCase):
                 except evod.FailedPrecondition as error:
                     ends.append(error)
 
-        threads = [threading.Thread(target=end_of, args=(wait,)) for wait in (run.__next__, snapshots.__next__, world.wait)]
+        threads = [threading.Thread(target=end_of, args=(wait,))
+                   for wait in (run.__next__, snapshots.__next__, world.wait)]
         for thread in threads:
             thread.start()
         path = pathlib.Path(folder.name, "a.evod")

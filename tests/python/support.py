@@ -1,5 +1,5 @@
-"""Real servers, a relay and a folder of files for the tests of the Python package. The environment variable EVOD names the
-program."""
+"""Real servers, a relay and a folder of files for the tests of the Python package. The environment variable EVOD names
+the program."""
 import json
 import os
 import pathlib
@@ -48,8 +48,8 @@ class Server:
 class Relay:
     """Forwards data between a client and a server, and can cut the connection.
 
-    at(to_server, data): called on a thread of the relay before it forwards a piece of data; True drops the piece and cuts
-    the connection.
+    at(to_server, data): called on a thread of the relay before it forwards a piece of data; True drops the piece and
+    cuts the connection.
     """
 
     def __init__(self, port, at=lambda to_server, data: False):

@@ -28,7 +28,8 @@ SMALL = {"population_size": 12, "generation_s": 2}
 GRID = {"mutation_chance": {"from": 0.01, "to": 0.5, "steps": 3, "scale": "log"}, "shuffle_fitness": [True, False]}
 LONG = {"generation_limit": 1_000_000}  # takes an hour
 #: As for a process that mpirun has started.
-IN_A_JOB = {"OMPI_COMM_WORLD_SIZE": "4", "OMPI_COMM_WORLD_RANK": "1", "PMIX_RANK": "1", "PMI_SIZE": "4", "PMI_RANK": "1"}
+IN_A_JOB = {"OMPI_COMM_WORLD_SIZE": "4", "OMPI_COMM_WORLD_RANK": "1", "PMIX_RANK": "1", "PMI_SIZE": "4",
+            "PMI_RANK": "1"}
 
 
 def read(path):
@@ -105,7 +106,8 @@ class RunTable(Temporary):
         self.refused(lambda: evod.run_table(SMALL, generations=-1), "generations")
         self.refused(lambda: evod.run_table(SMALL, generations=1, seed="one"), "seed")
         self.refused(lambda: evod.run_table(SMALL, generations=1, threads=0), "threads")
-        error = self.refused(lambda: evod.run_table(SMALL, generations=1, population_size=0, selektion="best", colour=1),
+        error = self.refused(lambda: evod.run_table(SMALL, generations=1, population_size=0, selektion="best",
+                                                    colour=1),
                              "population_size", "selektion", "colour")
         copy = pickle.loads(pickle.dumps(error))
         self.assertEqual((type(copy), copy.violations), (evod.InvalidArgument, error.violations))
@@ -150,7 +152,8 @@ class Sweeps(Temporary):
         islands = self.file("islands.json", {**SMALL, "seed": 3, "island_count": 2, "stagnation_limit": 2,
                                              "mutation_chance": {"1": 0.5, "3": 0.1}})
         cells = [{"population_size": 8}, {"controller": "network"}, {"mutation_chance": 0.3, "free_genes": 1}]
-        cube = {"samples": 3, "parameters": {"mutation_chance": {"from": 0.1, "to": 0.3}, "selection": ["random", "roulette"]}}
+        cube = {"samples": 3, "parameters": {"mutation_chance": {"from": 0.1, "to": 0.3},
+                                             "selection": ["random", "roulette"]}}
         with concurrent.futures.ThreadPoolExecutor(2) as executor:
             for design in ({"list": cells}, {"latin_hypercube": cube}):
                 expected = self.expected({"experiment": "islands.json", **design, "replicates": 2})
@@ -160,7 +163,8 @@ class Sweeps(Temporary):
                 shutil.rmtree(self.folder / "of-program")
 
     def test_each_way_resumes_the_other(self):
-        arguments = {"grid": {"mutation_chance": [0.1, 0.2]}, "replicates": 2, "generations": 2, "out": self.folder / "out"}
+        arguments = {"grid": {"mutation_chance": [0.1, 0.2]}, "replicates": 2, "generations": 2,
+                     "out": self.folder / "out"}
         parts = self.folder / "out" / "parts"
         with concurrent.futures.ThreadPoolExecutor(1) as executor:
             whole = evod.sweep(SMALL, executor=executor, **arguments).csv
@@ -210,7 +214,8 @@ class Failures(Temporary):
     def test_a_failed_run_is_named_and_the_others_end(self):
         for executor in (concurrent.futures.ThreadPoolExecutor(2), processes()):
             with executor, self.assertRaises(evod.ProgramFailed) as raised:
-                evod.sweep(LONG, list=[{"mutation_chance": chance} for chance in (0.1, 0.2, 0.3, 0.4)], executor=executor,
+                evod.sweep(LONG, list=[{"mutation_chance": chance} for chance in (0.1, 0.2, 0.3, 0.4)],
+                           executor=executor,
                            program=self.fails_in_cell_1())
             self.assertEqual(str(raised.exception), "cell 1 (mutation_chance 0.2), replicate 0: no memory is left")
             self.assertEqual(runs_below(), [])
@@ -233,7 +238,8 @@ class Failures(Temporary):
 
         killer = threading.Thread(target=kill)
         killer.start()
-        with executor, self.assertRaisesRegex(evod.ProgramFailed, r"^cell 0 \(mutation_chance 0.1\), replicate 0: Broken"):
+        with executor, self.assertRaisesRegex(evod.ProgramFailed,
+                                              r"^cell 0 \(mutation_chance 0.1\), replicate 0: Broken"):
             evod.sweep(LONG, grid={"mutation_chance": [0.1]}, executor=executor)
         killer.join()
         waiting.until(lambda: not any(map(is_run, runs)), "the end of the run without its worker")
@@ -241,7 +247,8 @@ class Failures(Temporary):
     def test_another_build_of_a_worker_is_refused(self):
         with mock.patch.object(executor_sweep, "_build_of", lambda *_: "evod: 9.9"), \
                 concurrent.futures.ThreadPoolExecutor(1) as executor, \
-                self.assertRaisesRegex(evod.ProgramFailed, r"^cell 0 .* is another build of evod \(evod: 9.9\) than that of the "
+                self.assertRaisesRegex(evod.ProgramFailed, r"^cell 0 .* is another build of evod \(evod: 9.9\) than "
+                                                           r"that of the "
                                                            r"sweep \(evod: \d.*, model: \d+\): install the same build"):
             evod.sweep(SMALL, grid={"mutation_chance": [0.1]}, generations=1, executor=executor)
 
@@ -249,7 +256,8 @@ class Failures(Temporary):
         """Starts a sweep in a process of its own. Asserts that it ends after interrupt(process), with its runs."""
         script = (f"import concurrent.futures, evod\n{before}with {executor} as executor:\n"
                   f"    evod.sweep({LONG!r}, grid={{'mutation_chance': [0.1, 0.2, 0.3]}}, executor=executor)\n")
-        process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   text=True)
         waiting.until(lambda: len(runs_below()) == 2, "two runs")
         interrupt(process)
         _, errors = waiting.communicate(process)
@@ -264,9 +272,11 @@ class Failures(Temporary):
     def test_a_sweep_notices_a_signal_just_before_a_wait(self):
         # Such a signal does not interrupt the wait. Neither does one that another thread receives.
         before = ("import signal, sys, threading\n"
-                  "def interrupt():\n    sys.stdin.readline()\n    signal.pthread_kill(threading.get_ident(), signal.SIGINT)\n"
+                  "def interrupt():\n    sys.stdin.readline()\n    signal.pthread_kill(threading.get_ident(), "
+                  "signal.SIGINT)\n"
                   "threading.Thread(target=interrupt, daemon=True).start()\n")
-        self.interrupted("concurrent.futures.ThreadPoolExecutor(2)", lambda process: print(file=process.stdin, flush=True), before)
+        self.interrupted("concurrent.futures.ThreadPoolExecutor(2)",
+                         lambda process: print(file=process.stdin, flush=True), before)
 
     def test_a_cancelled_task_stops_its_runs(self):
         async def cancel(executor):
@@ -317,7 +327,8 @@ class Mpi(Temporary):
         arguments = {"grid": GRID, "replicates": 2, "seed": 4, "generations": 2}
         script = self.folder / "sweep.py"
         script.write_text(OF_MPI.format(small=SMALL, arguments=arguments))
-        command = ["mpirun", "-n", "3", sys.executable, "-m", "mpi4py.futures", str(script), str(self.folder / "runs.csv")]
+        command = ["mpirun", "-n", "3", sys.executable, "-m", "mpi4py.futures", str(script),
+                   str(self.folder / "runs.csv")]
         done = waiting.run(command, capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual((self.folder / "runs.csv").read_text(), evod.sweep(SMALL, **arguments).csv)

@@ -1,5 +1,5 @@
-"""The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes to exactly the values of its line, and every
-mutation of mutations.txt is refused or decodes to the content with the listed checksum."""
+"""The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes to exactly the values of its line, and
+every mutation of mutations.txt is refused or decodes to the content with the listed checksum."""
 import collections
 import copy
 import json
@@ -235,7 +235,8 @@ class Vectors(unittest.TestCase):
         sections = {(scope, "delta", "food", "parts", parts) for scope in ("island", "tile") for parts in range(4)}
         sections |= {("tile", "delta", "organisms", "parts", parts) for parts in (*range(4), 4, 5)}
         sections |= {("tile", "delta", "crates", "parts", parts) for parts in range(3)}
-        sections |= {("island", "delta", "organisms", "parts", parts) for parts in range(2)}  # no organism is born within a generation
+        # no organism is born within a generation
+        sections |= {("island", "delta", "organisms", "parts", parts) for parts in range(2)}
         ticks = {(scope, "delta", "ticks", ticks) for scope in ("island", "tile") for ticks in range(3)}
         ticks |= {("island", "keyframe", "ticks", ticks) for ticks in range(3)}
         positions = {(scope, "position_bytes", count) for scope in ("island", "tile") for count in (2, 4)}

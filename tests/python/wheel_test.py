@@ -1,4 +1,5 @@
-"""The wheel of scripts/package_python is complete: it works in a new virtual environment, without protoc and the sources."""
+"""The wheel of scripts/package_python is complete: it works in a new virtual environment, without protoc and the
+sources."""
 import os
 import pathlib
 import subprocess
@@ -18,7 +19,8 @@ with evod.local(seed=42) as lab:
 class Wheel(unittest.TestCase):
     def run_it(self, *command, **environment):
         without_package = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-        done = subprocess.run(command, capture_output=True, text=True, cwd=self.folder, env={**without_package, **environment})
+        done = subprocess.run(command, capture_output=True, text=True, cwd=self.folder,
+                              env={**without_package, **environment})
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done.stdout
 

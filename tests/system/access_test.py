@@ -32,13 +32,16 @@ PERMISSION_DENIED, RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED = 7, 8, 14, 
 # The lowest role of every request, stated independently of commands.proto. Add new requests here, too.
 LEAST = {
     "create_world": ADMIN, "delete_world": ADMIN, "fork_world": ADMIN, "shut_down": ADMIN,
-    "reset_world": CONTROLLER, "release_lease": CONTROLLER, "renew_lease": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
-    "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "cancel_change": CONTROLLER, "place": CONTROLLER, "remove": CONTROLLER, "set_fitness": CONTROLLER, "seek": CONTROLLER,
+    "reset_world": CONTROLLER, "release_lease": CONTROLLER, "renew_lease": CONTROLLER, "run": CONTROLLER,
+         "run_until_tick": CONTROLLER, "pause": CONTROLLER,
+    "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "cancel_change": CONTROLLER,
+         "place": CONTROLLER, "remove": CONTROLLER, "set_fitness": CONTROLLER, "seek": CONTROLLER,
     "close_replay": CONTROLLER,
     "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,
     "get_organism": VIEWER, "describe": VIEWER, "get_metrics": VIEWER, "get_breeding": VIEWER,
     "get_population": VIEWER, "get_motion": VIEWER, "subscribe_snapshots": VIEWER, "subscribe_events": VIEWER,
-    "unsubscribe": VIEWER, "request_keyframe": VIEWER, "open_replay": VIEWER, "export_run": VIEWER, "continue_export": VIEWER,
+    "unsubscribe": VIEWER, "request_keyframe": VIEWER, "open_replay": VIEWER, "export_run": VIEWER,
+         "continue_export": VIEWER,
     "set_view": VIEWER,
 }
 NAMES = {VIEWER: "viewer", CONTROLLER: "controller", ADMIN: "admin"}
@@ -123,7 +126,8 @@ class Roles(Access):
             sent = dict(client_key="k", request_id=1, run_until_tick=c.RunUntilTick(tick=7))
             first = admin.call(**sent)
             self.assertEqual(paused.setdefault("first", first), first)
-            other.call(client_key="k", request_id=2 if restarted else 1, set_speed=c.SetSpeed(speed=plain.w.Speed(max=True)))
+            other.call(client_key="k", request_id=2 if restarted else 1,
+                       set_speed=c.SetSpeed(speed=plain.w.Speed(max=True)))
             other.call(client_key="k", request_id=2**63, pause=c.Pause())
             self.assertEqual(admin.call(**sent), first)
             admin.call(client_key="k", request_id=3 if restarted else 2, pause=c.Pause())
@@ -132,7 +136,8 @@ class Roles(Access):
             for client, clients in ((viewer, {("ada", "", ""), ("bob", "", "")}), (other, whole), (admin, whole)):
                 exported = c.ExportRun(table=c.RUN_TABLE_EVENTS, format=c.TEXT_FORMAT_CSV)
                 table = list(csv.DictReader(io.StringIO(plain.until(
-                    lambda: (lambda part: part.text if part.last else None)(client.call(export_run=exported).export_part),
+                    lambda: (lambda part: part.text if part.last
+                             else None)(client.call(export_run=exported).export_part),
                     "the whole table").decode())))
                 self.assertNotIn("client_key", table[0])
                 self.assertNotIn('"k"', "".join(row["request"] for row in table))
@@ -162,7 +167,8 @@ class Roles(Access):
         viewer = self.come(self.serve("--require-token", "--seed", "4"), secret)
         before = viewer.world()
         for request in [name for name, role in LEAST.items() if role > VIEWER]:
-            self.assertEqual(viewer.response(viewer.ask(**{request: type(getattr(c.Request(), request))()})).status.code,
+            self.assertEqual(
+                viewer.response(viewer.ask(**{request: type(getattr(c.Request(), request))()})).status.code,
                              PERMISSION_DENIED)
         after = viewer.world()
         self.assertEqual(after.SerializeToString(), before.SerializeToString())
@@ -188,7 +194,8 @@ class Roles(Access):
         tables = [c.RUN_TABLE_POPULATION, c.RUN_TABLE_ORGANISMS]
         requests = [dict(export_run=c.ExportRun(world="w", table=tables[0], format=c.TEXT_FORMAT_CSV, generation=99))]
         for world in ("damaged", "missing"):
-            requests += [dict(export_run=c.ExportRun(world=world, table=table, format=c.TEXT_FORMAT_CSV)) for table in tables]
+            requests += [dict(export_run=c.ExportRun(world=world, table=table, format=c.TEXT_FORMAT_CSV))
+                         for table in tables]
             requests += [dict(get_breeding=c.GetBreeding(world=world)), dict(open_replay=c.OpenReplay(world=world))]
         for request in requests:
             texts.append(str(viewer.response(viewer.ask(**request))))
@@ -239,7 +246,10 @@ class Roles(Access):
         self.assertEqual((by.kind, by.user, by.client), (w.ACTOR_KIND_CLIENT, "karl", "plain"))
         self.assertRegex(by.address, r"^127\.0\.0\.1:\d+$")
         of_karl = w.Actor(kind=w.ACTOR_KIND_CLIENT, user="karl")
-        self.assertEqual(viewer.next_event("parameters_changed").parameters_changed.by, of_karl)
+        self.assertEqual(event.text, f"karl: plain {by.address} set mutation_chance to 0.3, revision 2")
+        event = viewer.next_event("parameters_changed")
+        self.assertEqual(event.parameters_changed.by, of_karl)
+        self.assertEqual(event.text, "karl set mutation_chance to 0.3, revision 2")
         change = plain.set_parameters(mutation_chance=0.4)
         change.at_generation = 9
         controller.call(set_parameters=change)
@@ -283,7 +293,8 @@ class Tokens(Access):
                          [("client", "", name) for name in names])
 
     def test_on_other_interfaces_a_token_must_exist(self):
-        done = waiting.run([EVOD, "--bind", "0.0.0.0", "--port", "0", "--data", self.folder], capture_output=True, text=True)
+        done = waiting.run([EVOD, "--bind", "0.0.0.0", "--port", "0", "--data", self.folder], capture_output=True,
+                           text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn(f"evod token add NAME --role admin --data {self.folder}", done.stderr)
 
@@ -320,7 +331,8 @@ class Tokens(Access):
 
         def revoke(lap):
             anna = self.token("anna", VIEWER)
-            goes = plain.until(lambda: (lambda came: came if came.welcome else None)(self.come(server, anna)), "admission")
+            goes = plain.until(lambda: (lambda came: came if came.welcome else None)(self.come(server, anna)),
+                               "admission")
             token_command("revoke", "anna", data=self.folder)
             lap()
             revoked = time.monotonic()
@@ -357,7 +369,8 @@ class Tokens(Access):
         client.call(list_worlds=c.ListWorlds())  # admitted sessions continue
         server.end()
         for change, words in ((lambda: None, "chmod it to 600"),
-                              (lambda: (path.chmod(0o600), path.write_text(path.read_text()[:-20])), "tokens is damaged: line 2")):
+                              (lambda: (path.chmod(0o600), path.write_text(path.read_text()[:-20])),
+                               "tokens is damaged: line 2")):
             change()
             done = waiting.run([EVOD, "--port", "0", "--data", self.folder], capture_output=True, text=True)
             self.assertEqual(done.returncode, 1)
@@ -428,7 +441,8 @@ class Tokens(Access):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             terminal, side = pty.openpty()
             before = termios.tcgetattr(side)
-            with subprocess.Popen([EVOCTL, "--server", f"localhost:{server.port}", "worlds"], stdin=side, stderr=side) as asking:
+            with subprocess.Popen([EVOCTL, "--server", f"localhost:{server.port}", "worlds"], stdin=side,
+                                  stderr=side) as asking:
                 shown = b""
                 while b"token for" not in shown:
                     shown += os.read(terminal, 1000)
@@ -481,7 +495,8 @@ class Tokens(Access):
             server = self.serve(*options)
             self.come(server).world()
             server.end()
-            self.assertEqual(("connected as admin" in server.output(), "disconnected" in server.output()), (logged, logged))
+            self.assertEqual(("connected as admin" in server.output(), "disconnected" in server.output()),
+                             (logged, logged))
 
     def test_names_of_worlds_do_not_leave_the_folder(self):
         server = self.serve()
@@ -596,9 +611,12 @@ class Tls(Access):
         self.assertIn("default", self.evoctl("worlds", server=server, environment={"EVOD_CA": certificates}))
         for words, options in ((f"not trusted: .*{strangers} has not signed it", ["--ca", strangers]),
                                ("not trusted: .*give the server's evod.crt with --ca", ["--tls"]),
-                               ("^evoctl: --ca: /nowhere cannot be used for TLS: cannot be read: No such file", ["--ca", "/nowhere"]),
-                               (f"^evoctl: --cert: {__file__} cannot be used", ["--ca", certificates, "--cert", __file__]),
-                               ("^evoctl: --cert: .*give the key with --key", ["--ca", certificates, "--cert", certificates])):
+                               ("^evoctl: --ca: /nowhere cannot be used for TLS: cannot be read: No such file",
+                                ["--ca", "/nowhere"]),
+                               (f"^evoctl: --cert: {__file__} cannot be used",
+                                ["--ca", certificates, "--cert", __file__]),
+                               ("^evoctl: --cert: .*give the key with --key",
+                                ["--ca", certificates, "--cert", certificates])):
             self.assertRegex(self.evoctl(*options, "worlds", server=server, status=3), words)
         server.end()
         elsewhere = self.pair("elsewhere", "elsewhere.example")
@@ -637,9 +655,12 @@ class Tls(Access):
         (path / "none.pem").chmod(0o600)
         other = self.pair("strangers")
         for options, words in ((["--tls-cert", path / "evod.crt"], "--tls-cert requires --tls-key"),
-                               (["--tls-cert", path / "none.pem", "--tls-key", path / "evod.key"], "--tls-cert: .*none.pem"),
-                               (["--tls-cert", path / "evod.crt", "--tls-key", path / "gone"], "--tls-key: .*gone.*No such"),
-                               (["--tls-cert", path / "evod.crt", "--tls-key", path / "none.pem"], "--tls-key: .*none.pem"),
+                               (["--tls-cert", path / "none.pem", "--tls-key", path / "evod.key"],
+                                "--tls-cert: .*none.pem"),
+                               (["--tls-cert", path / "evod.crt", "--tls-key", path / "gone"],
+                                "--tls-key: .*gone.*No such"),
+                               (["--tls-cert", path / "evod.crt", "--tls-key", path / "none.pem"],
+                                "--tls-key: .*none.pem"),
                                (["--tls-cert", path / "evod.crt", "--tls-key", other / "evod.key"], "--tls-key: .*")):
             done = waiting.run([EVOD, "--port", "0", "--data", self.folder, *map(str, options)], capture_output=True,
                                text=True)

@@ -12,7 +12,8 @@ class Attack:
 
     def __init__(self, messages, port, kind, number):
         self.process = subprocess.Popen(
-            [sys.executable, str(pathlib.Path(__file__).with_name("attacker.py")), messages, str(port), kind, str(number)],
+            [sys.executable, str(pathlib.Path(__file__).with_name("attacker.py")), messages, str(port), kind,
+             str(number)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         assert self.process.stdout.readline() == "ready\n"
 

@@ -10,7 +10,7 @@ It never has more than NUMBER connections, and opens at most 1,000 per second.
     slow N       N connections that send a frame byte by byte; closed ones reconnect
     strangers N  N connections that send nothing; closed ones reconnect
     deaf N       N sessions that subscribe to snapshots and never read them
-    pauses N     a viewer of the world w that reads for a second, pauses for N seconds, and reads on; if it is closed, it
+    pauses N     a viewer of the world w that reads for a second, pauses for N seconds, reads on; if it is closed, it
                  reconnects and counts its bytes from zero
     connects N   N connections per second, each closed at once
     malformed N  N frames per second with invalid bodies, on one session that reads its answers
@@ -79,7 +79,8 @@ def connect(i, *sent, receive_bytes=None):
 
 def print_counts():
     print(json.dumps({**counts, "seconds": time.monotonic() - begun,
-                      "closed_after_s": [min(closed_after_s), max(closed_after_s)] if closed_after_s else []}), flush=True)
+                      "closed_after_s": [min(closed_after_s), max(closed_after_s)] if closed_after_s else []}),
+          flush=True)
 
 
 def over():
@@ -210,7 +211,8 @@ def churn():
     wishes = [subscribing(), *(subscribing(view(i)) for i in range(3)),
               asking(subscribe_events=c.SubscribeEvents()), asking(get_history=c.GetHistory(world="w")),
               asking(get_organism=c.GetOrganism(world="w")), asking(list_worlds=c.ListWorlds()),
-              asking(describe=c.Describe()), asking(get_metrics=c.GetMetrics()), asking(open_replay=c.OpenReplay(world="w")),
+              asking(describe=c.Describe()), asking(get_metrics=c.GetMetrics()),
+              asking(open_replay=c.OpenReplay(world="w")),
               asking(unsubscribe=c.Unsubscribe(subscription_id=1)), b"EV\x01\x01\x03\0\0\0\xff\xff\xff"]
 
     def come(i):
@@ -251,7 +253,8 @@ def pauses():
 
 
 def view(i):
-    return c.View(region=c.Region(left_px=300.0 * (i % 20), top_px=300.0 * (i // 20 % 20), width_px=1280, height_px=720))
+    return c.View(region=c.Region(left_px=300.0 * (i % 20), top_px=300.0 * (i // 20 % 20), width_px=1280,
+                                  height_px=720))
 
 
 attacks = {"idle": lambda: hold(lambda i: connect(i, hello)),

@@ -32,7 +32,8 @@ class Background(access.Access, export_test.Runs):
         for eve in eves:
             eve.export = eve.ask(export_run=c.ExportRun(world="w", table=c.RUN_TABLE_ORGANISMS,
                                                         format=c.TEXT_FORMAT_JSON_LINES))
-            eve.asked = [eve.ask(get_breeding=c.GetBreeding(world="w", generation=GENERATIONS - 1 - i)) for i in range(20)]
+            eve.asked = [eve.ask(get_breeding=c.GetBreeding(world="w", generation=GENERATIONS - 1 - i))
+                         for i in range(20)]
         return eves
 
     def is_served(self, ada):

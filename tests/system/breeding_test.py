@@ -1,5 +1,5 @@
-"""How generations were bred: GetBreeding and evoctl breeding, against the tables of the run's file. EVOD and EVOCTL name
-the programs, MESSAGES the folder of the message classes."""
+"""How generations were bred: GetBreeding and evoctl breeding, against the tables of the run's file. EVOD and EVOCTL
+name the programs, MESSAGES the folder of the message classes."""
 import csv
 import io
 import json
@@ -99,7 +99,8 @@ class Breeding(export_test.Runs):
         table = self.organisms()
         for bred in reported.values():
             self.check(bred, table)
-        migrants = {key for key, bred in reported.items() for contender in bred.contenders if contender.HasField("migrant")}
+        migrants = {key for key, bred in reported.items() for contender in bred.contenders
+                    if contender.HasField("migrant")}
         self.assertEqual(migrants, {(generation, island) for generation in (2, 4) for island in range(2)})
         self.assertEqual(self.breeding(client, island=1), reported[4, 1])
 
@@ -124,7 +125,8 @@ class Breeding(export_test.Runs):
                                  sorted(contender.own_fitness for contender in bred.contenders))
             self.assertNotEqual([contender.fitness for contender in bred.contenders],
                                 [contender.own_fitness for contender in bred.contenders])
-        text = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w", "breeding"],
+        text = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w",
+                            "breeding"],
                            capture_output=True, text=True).stdout
         self.assertRegex(text, r"ORGANISM +OWN FITNESS +SHUFFLED +RANK")
         self.assertIn("shuffle_fitness=true", text)
@@ -256,7 +258,8 @@ class Breeding(export_test.Runs):
         client.call(FAILED_PRECONDITION, get_breeding=ask())
         client.call(FAILED_PRECONDITION, get_breeding=ask(generation=1))
         client.run_to(250, "w")
-        for field, allowed, wanted in (("generation", "1 to 2", {"generation": 0}), ("generation", "1 to 2", {"generation": 3}),
+        for field, allowed, wanted in (("generation", "1 to 2", {"generation": 0}),
+                                       ("generation", "1 to 2", {"generation": 3}),
                                        ("island", "0 to 1", {"island": 2}), ("world", None, {"world": "nowhere"})):
             status = client.call(NOT_FOUND, get_breeding=ask(**wanted)).status
             self.assertEqual([violation.field for violation in status.violations], ["get_breeding." + field])
@@ -272,14 +275,16 @@ class Breeding(export_test.Runs):
         self.run_world(client, 3, selection="tournament")
 
         def evoctl(*words, status=0):
-            done = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w", *words],
+            done = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w",
+                                *words],
                                capture_output=True, text=True)
             self.assertEqual(done.returncode, status, done.stdout + done.stderr)
             return done.stderr if status else done.stdout
 
         bred = self.breeding(client, island=1)
         text = evoctl("breeding", "--island", "1", "--rows", "12")
-        self.assertIn("generation 2 of island 1: 12 organisms, 6 picks; the next generation: 0 elite, 6 other survivors, "
+        self.assertIn("generation 2 of island 1: 12 organisms, 6 picks; the next generation: 0 elite, 6 other "
+                      "survivors, "
                       "6 children", text)
         self.assertIn("selection=tournament", text)
         for pick in bred.picks:

@@ -1,4 +1,5 @@
-"""The end of a client, in each way and during each long request: its session, replays and exports give their places back.
+"""The end of a client, in each way and during each long request: its session, replays and exports give their places
+back.
 
 EVOD=… EVOCTL=… MESSAGES=… client_end_test.py
 """

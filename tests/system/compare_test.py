@@ -84,14 +84,16 @@ class Compare(Folder):
                                   "--set", "selection=truncation")
         self.assertIn("default: 20 replicates of 15 generations, from seed 3\n", text)
         self.assertIn("Did evolution do it? Yes: the mean fitness rose by ", text)
-        self.assertRegex(text, r"\nharmless_poison +is not run: the fitness is a function of the chromosome, and organisms do not eat\n")
+        self.assertRegex(text, r"\nharmless_poison +is not run: the fitness is a function of the chromosome, and "
+                               r"organisms do not eat\n")
         self.assertIn("\nPoison: the fitness is a function of the chromosome, and organisms do not eat.\n", text)
         self.assertIn("new variety adds to the variety of the first generation", text)
         self.assertRegex(text, r"random_selection .* selection=random\n")
 
     def test_a_world_without_selection_gets_the_answer_no(self):
         text, table = self.outputs("--controls", "--replicates", "20", "--generations", "3", "--seed", "3", *SMALL,
-                                            "--set", "selection=random", "--set", "mutation_chance=0", "--set", "poison_harm=0")
+                                            "--set", "selection=random", "--set", "mutation_chance=0", "--set",
+                                   "poison_harm=0")
         self.assertIn("Did evolution do it? No: parents are already drawn at random", text)
         self.assertEqual(text.count("is not run: "), 4)
         self.assertEqual({r["arm"] for r in csv.DictReader(io.StringIO(table))}, {"default"})
@@ -123,7 +125,8 @@ class Compare(Folder):
         self.assertFalse(pathlib.Path(f"{self.folder.name}/a.svg").exists())
 
     def test_worlds_are_compared_with_the_first(self):
-        tournament = self.file(json.dumps({"fitness": "gene_sum", "selection": "tournament", "seed": 9}), "tournament.json")
+        tournament = self.file(json.dumps({"fitness": "gene_sum", "selection": "tournament", "seed": 9}),
+                               "tournament.json")
         drifting = self.file(json.dumps({"fitness": "gene_sum", "selection": "random"}), "drifting.json")
         text, table = self.outputs(tournament, drifting, tournament, "--generations", "10", "--replicates", "10")
         self.assertIn("tournament: 10 replicates of 10 generations, from seed 9\n", text)
@@ -160,10 +163,12 @@ class Compare(Folder):
             (["--controls", "--jobs", "0"], 2, "--jobs: got 0, allowed a whole number, 1 to 1024"),
             (["--controls", "--seed", "-1"], 2, "--seed"),
             (["--controls", "--set", "mutation_chance=2"], 1, "--set mutation_chance: got 2, allowed 0 to 1"),
-            (["--controls", "--set", "shuffle_fitness=perhaps"], 1, "--set shuffle_fitness: got perhaps, allowed true or false"),
+            (["--controls", "--set", "shuffle_fitness=perhaps"], 1,
+             "--set shuffle_fitness: got perhaps, allowed true or false"),
             ([self.folder.name, "--controls"], 1, "this is a folder"),
             ([self.file('{"food_count": -3}', "bad.json"), "--controls"], 1, "food_count (line 1): got -3"),
-            ([self.file('{"generation_limit": 1}', "short.json"), "--controls"], 1, "generation_limit: got 1, allowed at least 2"),
+            ([self.file('{"generation_limit": 1}', "short.json"), "--controls"], 1,
+             "generation_limit: got 1, allowed at least 2"),
             (["--controls", "--csv", "/nowhere/a.csv"], 1, "--csv: cannot write /nowhere/a.csv"),
             (["--controls", "--plot", "/nowhere/a.svg"], 1, "--plot: cannot write /nowhere/a.svg"),
         ):

@@ -60,7 +60,8 @@ class Run(Folder):
         path = self.folder.name + "/run.csv"
         evod("run", "--seed", "1", "--generations", "3", "--csv", path, "--set", "island_count=2", *self.short)
         rows = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
-        self.assertEqual([(r["generation"], r["island"]) for r in rows], [(str(g), str(i)) for g in (1, 2, 3) for i in (0, 1)])
+        self.assertEqual([(r["generation"], r["island"]) for r in rows],
+                         [(str(g), str(i)) for g in (1, 2, 3) for i in (0, 1)])
         for row in rows:
             self.assertEqual(int(row["alive_count"]) + int(row["starved_count"]) + int(row["poisoned_count"]), 12)
             self.assertLessEqual(float(row["fitness_worst"]), float(row["fitness_mean"]))
@@ -89,7 +90,8 @@ class Run(Folder):
         answers = "9\nmany\n11\n\n1.5\n1\n" + "\n" * 40
         done = evod("run", "--seed", "1", "--ask", stdin=answers)
         self.assertIn("food_count: got many, allowed a whole number, 0 to", done.stdout)
-        for question in ("population_size", "poison_count", "generation_s", "population_model", "selection", "crossover",
+        for question in ("population_size", "poison_count", "generation_s", "population_model", "selection",
+                         "crossover",
                          "rearranging", "creep", "fitness_scaling", "mutation_chance", "survivors"):
             self.assertIn(f"  {question} (", done.stdout)
         same = evod("run", "--seed", "1", "--generations", "1", "--set", "population_size=9", "--set", "food_count=11",
@@ -109,8 +111,10 @@ class Run(Folder):
 
     def test_a_server_checks_options_before_it_opens_files(self):
         data = pathlib.Path(self.folder.name) / "not made"
-        for options, words in ((["--bind", "300.1.1.1"], "--bind: got '300.1.1.1', allowed the IP address of an interface"),
-                               (["--http-port", "0", "--http-bind", "x"], "--http-bind: got 'x', allowed the IP address of an interface"),
+        for options, words in ((["--bind", "300.1.1.1"], "--bind: got '300.1.1.1', allowed the IP address of an "
+                                                         "interface"),
+                               (["--http-port", "0", "--http-bind", "x"],
+                                "--http-bind: got 'x', allowed the IP address of an interface"),
                                (["--tls-cert", "a.crt"], "--tls-cert requires --tls-key")):
             self.assertIn(words, evod("--port", "0", "--data", data, *options, status=1).stderr)
             self.assertFalse(data.exists())
@@ -139,24 +143,29 @@ class Run(Folder):
 class Options(Folder):
     def test_options_before_a_subcommand_count_as_its_own(self):
         short = ["--generations", "1", *Run.short]
-        self.assertEqual(state(evod("--seed", "7", "run", *short).stdout), state(evod("run", "--seed", "7", *short).stdout))
+        self.assertEqual(state(evod("--seed", "7", "run", *short).stdout),
+                         state(evod("run", "--seed", "7", *short).stdout))
         evod("--data", self.folder.name, "token", "add", "anna", "--role", "viewer")
         self.assertIn("anna", evod("token", "list", "--data", self.folder.name).stdout)
-        self.assertIn("given twice, before run and after it", evod("--seed", "7", "run", "--seed", "7", status=2).stderr)
+        self.assertIn("given twice, before run and after it",
+                      evod("--seed", "7", "run", "--seed", "7", status=2).stderr)
         said = evod("--data", self.folder.name, "fork", "/nowhere.evod", "--name", "a b", status=1).stderr
         self.assertIn("--name: got \"a b\"", said)
 
     def test_options_of_the_server_are_refused_by_subcommands(self):
         path = self.file("{}")
         for option, words in ((["--port", "7744"], ["verify", path]), (["--data", self.folder.name], ["run", path]),
-                              (["--start"], ["replay", path]), (["--keep-every", "2"], ["export", path, "--what", "events"]),
+                              (["--start"], ["replay", path]),
+                              (["--keep-every", "2"], ["export", path, "--what", "events"]),
                               (["--speed", "2"], ["fork", path, "--name", "x"]), (["--seed", "1"], ["check", path]),
-                              (["--require-token"], ["token", "list"]), (["--threads", "2"], ["certificate", "localhost"]),
+                              (["--require-token"], ["token", "list"]),
+                              (["--threads", "2"], ["certificate", "localhost"]),
                               (["--log-level", "info"], ["parameters"]), (["--keep-nothing"], ["limits"])):
             command = " ".join(words[:2]) if words[0] == "token" else words[0]
             with self.subTest(command):
                 said = evod(*option, *words, status=2).stderr
-                self.assertIn(f"{option[0]}: an option of the server that evod {command} does not use: leave it out", said)
+                self.assertIn(f"{option[0]}: an option of the server that evod {command} does not use: leave it out",
+                              said)
 
     def test_keep_nothing_excludes_options_of_run_files(self):
         for option in (["--durability", "full"], ["--file-bytes-max", "2000000"], ["--keep-every", "2"]):
@@ -165,12 +174,14 @@ class Options(Folder):
 
     def test_an_invalid_number_is_reported_with_its_range(self):
         for words, least, most in ((["--port"], 0, 65535), (["--http-port"], 0, 65535), (["--threads"], 1, 1024),
-                                   (["--sessions-max"], 2, 1000000), (["--worlds-max"], 1, 1000000), (["--seed"], 0, 2**64 - 1),
+                                   (["--sessions-max"], 2, 1000000), (["--worlds-max"], 1, 1000000),
+                                   (["--seed"], 0, 2**64 - 1),
                                    (["--keep-every"], 1, 10**9), (["--file-bytes-max"], 2**20, 2**50),
                                    (["run", "--generations"], 0, 2**32 - 1), (["run", "--threads"], 1, 1024),
                                    (["replay", "x", "--generation"], 1, 2**64 - 1),
                                    (["fork", "x", "--name", "y", "--at-generation"], 1, 2**64 - 1),
-                                   (["export", "x", "--generation"], 1, 2**64 - 1), (["verify", "x", "--threads"], 1, 1024)):
+                                   (["export", "x", "--generation"], 1, 2**64 - 1),
+                                   (["verify", "x", "--threads"], 1, 1024)):
             for given in ("-1", "1e99", "abc", "1.5", "010", str(2**64), *(["0"] if least > 0 else [])):
                 with self.subTest(words=words, given=given):
                     self.assertIn(f"evod: {words[-1]}: got {given}, allowed a whole number, {least} to {most}\n",
@@ -182,7 +193,8 @@ class Options(Folder):
 
 class Output(Folder):
     def test_a_server_logs_on_standard_error(self):
-        with subprocess.Popen([EVOD, "--port", "0", "--data", self.folder.name], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        with subprocess.Popen([EVOD, "--port", "0", "--data", self.folder.name], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE,
                               text=True, env=os.environ | {"EVOD_INSTRUCTIONS": "baseline"}) as server:
             lines = [server.stderr.readline() for _ in range(3)]
             server.terminate()
@@ -212,20 +224,25 @@ class Output(Folder):
 
     def test_the_log_says_how_others_open_the_page(self):
         evod("token", "add", "anna", "--role", "viewer", "--data", self.folder.name)
-        log = self.log_of_start("--data", self.folder.name, "--http-port", "0", "--http-bind", "0.0.0.0", "--http-host", "lab.example")
+        log = self.log_of_start("--data", self.folder.name, "--http-port", "0", "--http-bind", "0.0.0.0", "--http-host",
+                                "lab.example")
         self.assertRegex(log, r" info page at http://lab\.example:\d+/\n.* info other users open "
-                              r"http://lab\.example:\d+/#token=TOKEN; evod token add NAME --role viewer makes a token\n")
+                              r"http://lab\.example:\d+/#token=TOKEN; "
+                              r"evod token add NAME --role viewer makes a token\n")
         self.assertIn("without TLS, any machine on the network path to 0.0.0.0", log)
 
     def test_vector_instructions_that_are_unknown_are_an_error(self):
-        done = waiting.run([EVOD, "parameters"], capture_output=True, text=True, env=os.environ | {"EVOD_INSTRUCTIONS": "mmx"})
+        done = waiting.run([EVOD, "parameters"], capture_output=True, text=True,
+                           env=os.environ | {"EVOD_INSTRUCTIONS": "mmx"})
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"^evod: EVOD_INSTRUCTIONS: got mmx, allowed on this processor baseline\b.*\n$")
         self.assertEqual(done.stdout, "")
 
     def test_a_full_standard_output_is_an_error(self):
-        for words in ("parameters",), ("limits",), ("token", "list", "--data", self.folder.name), ("run", *Run.short, "--seed",
-                                                                                                   "1", "--generations", "1"):
+        for words in ("parameters",), ("limits",), ("token", "list", "--data", self.folder.name), ("run", *Run.short,
+                                                                                                   "--seed",
+                                                                                                   "1", "--generations",
+                                                                                                   "1"):
             with open("/dev/full", "w") as full:
                 done = waiting.run([EVOD, *words], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 1, words)
@@ -239,7 +256,8 @@ class Output(Folder):
     def test_an_output_file_error_is_reported_with_its_reason(self):
         self.assertIn(f"--csv: cannot write {self.folder.name}: Is a directory",
                       evod("run", "--csv", self.folder.name, "--generations", "1", status=1).stderr)
-        self.assertIn(f"there are no tokens in {self.folder.name}", evod("token", "list", "--data", self.folder.name).stderr)
+        self.assertIn(f"there are no tokens in {self.folder.name}",
+                      evod("token", "list", "--data", self.folder.name).stderr)
 
 
 class Population(Folder):
@@ -247,7 +265,8 @@ class Population(Folder):
     two = ["--set", "population_size=2", "--set", "generation_s=1", "--generations", "1", "--seed", "1"]
 
     def run_with(self, rows, *arguments, status=0):
-        return evod("run", "--population", self.file(self.heading + rows, "plate.csv"), *self.two, *arguments, status=status)
+        return evod("run", "--population", self.file(self.heading + rows, "plate.csv"), *self.two, *arguments,
+                    status=status)
 
     def test_a_run_begins_with_it(self):
         path = self.folder.name + "/run.csv"
@@ -265,8 +284,10 @@ class Population(Folder):
             good: "population[0]: got 1 organism, allowed 2 organisms (population_size)",
             good + "0,1,100,110,20,130,140,150\n": "population[0].organism[1].body_size: got 20, allowed 40 to 200",
             good + "1,0,100,110,120,130,140,150\n": "population: got 2 islands, allowed 1 island (island_count)",
-            good + "0,2,100,110,120,130,140,150\n": "line 3: got \"0,2,100,110,120,130,140,150\", allowed organism 1 of",
-            good + "0,1,100,110,120,130,140\n": "line 3: got \"0,1,100,110,120,130,140\", allowed an island, an organism",
+            good + "0,2,100,110,120,130,140,150\n":
+                "line 3: got \"0,2,100,110,120,130,140,150\", allowed organism 1 of",
+            good + "0,1,100,110,120,130,140\n": "line 3: got \"0,1,100,110,120,130,140\", allowed an island, an "
+                                                "organism",
             good + "0,1,100,110,120,130,140,\n": "line 3: got ",
             good + "0,1,100,110,many,130,140,150\n": "line 3: got ",
             good + "0,1,100,110,nan,130,140,150\n": "body_size: got nan",
@@ -312,7 +333,8 @@ class Check(Folder):
         for tick_s, ticks, explicit, explicit_error, symplectic, symplectic_error, speed in rows:
             self.assertAlmostEqual(tick_s * ticks, 2.4)
             self.assertEqual((explicit_error, symplectic_error), (round(-2.4 * tick_s, 3), round(2.4 * tick_s, 3)))
-            self.assertEqual((round(explicit - 5.76, 3), round(symplectic - 5.76, 3)), (explicit_error, symplectic_error))
+            self.assertEqual((round(explicit - 5.76, 3), round(symplectic - 5.76, 3)),
+                             (explicit_error, symplectic_error))
             self.assertEqual(speed, 4.8)
 
     def test_a_file_and_integrators_exclude_each_other(self):

@@ -74,7 +74,8 @@ class DamagedWorld(past.Case):
         experiment = pathlib.Path(self.folder, "a.json")
         experiment.write_text("{}")
         server, client = self.serve("--experiment", str(experiment))
-        self.assertIn('--experiment, --seed and --population have no effect: world "a" exists and is damaged', server.output())
+        self.assertIn('--experiment, --seed and --population have no effect: world "a" exists and is damaged',
+                      server.output())
         self.assertEqual(list(self.damaged(client)), ["a"])
         server.end()
         self.assertEqual(self.path.read_bytes(), self.bytes)
@@ -84,7 +85,8 @@ class DamagedWorld(past.Case):
         server, client = self.serve()
         table = self.evoctl(server, "--world", "a", "export", "--what", "generations")
         self.assertEqual(table.count("\n"), 1 + 2 * 2, "two generations on two islands have ended")
-        self.assertIn("a.evod is damaged", self.evoctl(server, "--world", "a", "export", "--what", "organisms", status=1))
+        self.assertIn("a.evod is damaged", self.evoctl(server, "--world", "a", "export", "--what", "organisms",
+                                                       status=1))
         self.assertEqual(self.evoctl(server, "delete", "a"), "deleted a\n")
         self.assertFalse(self.path.exists())
         self.assertEqual(pathlib.Path(self.folder, "a.damaged-1.evod").read_bytes(), self.bytes)

@@ -131,8 +131,8 @@ class TilesDecoder:
         self.full = {}  # a Decoder for each tile of DETAIL_FULL in the last snapshot
 
     def decode(self, frame):
-        """{tile: content}. The content of a tile is its entities; or {"organisms": {"x": …, "y": …}, …} in 1/256 of its side;
-        or {"organisms": a square array of counts, …}. ValueError: request a keyframe."""
+        """{tile: content}. The content of a tile is its entities; or {"organisms": {"x": …, "y": …}, …} in 1/256 of its
+        side; or {"organisms": a square array of counts, …}. ValueError: request a keyframe."""
         before, self.full = self.full, {}
         full, seen = {}, {}
         for tile in frame.tiles:

@@ -1,4 +1,5 @@
-"""evoctl as a user meets it: every command against a real server, right and wrong. EVOD and EVOCTL name the programs."""
+"""evoctl as a user meets it: every command against a real server, right and wrong. EVOD and EVOCTL name the
+programs."""
 import contextlib
 import csv
 import fcntl
@@ -67,7 +68,8 @@ class Commands(WithServer):
         self.evoctl("run", "3", "--wait")
         rows = list(csv.DictReader(io.StringIO(self.evoctl("history", "--csv"))))
         self.assertEqual([row["generation"] for row in rows], ["1", "2", "3"])
-        self.assertEqual(len(list(csv.DictReader(io.StringIO(self.evoctl("history", "--csv", "--from", "2", "--to", "2"))))), 1)
+        self.assertEqual(
+            len(list(csv.DictReader(io.StringIO(self.evoctl("history", "--csv", "--from", "2", "--to", "2"))))), 1)
         self.assertRegex(self.evoctl("stats"), r"waiting")
         self.assertIn("food_radius", self.evoctl("organism", "3"))
         self.assertIn("organism", self.evoctl("organism", "5000", status=1))
@@ -149,7 +151,8 @@ class Commands(WithServer):
         self.assertEqual(reported.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
                                         "tournament_size=4"])
         wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=2)
-        self.assertEqual(wrong, "evoctl: mutation_chance: got 2, allowed 0 to 1\nevoctl: restitution: got -1, allowed 0 to 1\n")
+        self.assertEqual(wrong, "evoctl: invalid parameter values\n  mutation_chance: got 2, allowed 0 to 1\n"
+                                "  restitution: got -1, allowed 0 to 1\n")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
         self.evoctl("set", "--dry-run", "survivors=0.25")
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
@@ -174,7 +177,7 @@ class Commands(WithServer):
                 (["speed", "0"], "SPEED: got 0, allowed 0.001 to 10000"),
                 (["speed", "fast"], "SPEED: got fast, allowed max, or 0.001 to 10000, such as 2 for twice real time"),
                 (["create", "no/slash"], 'NAME: got "no/slash", allowed 1 to 64 of a-z A-Z 0-9 _ -'),
-                (["set", "--at-generation", "0", "survivors=1"], "--at-generation: got 0, allowed at least 2"),
+                (["set", "--at-generation", "0", "survivors=1"], "invalid planned change\n  --at-generation: got 0, allowed at least 2"),
                 (["set", "mutation_chanse=1"], "mutation_chanse: unknown parameter; did you mean mutation_chance?"),
                 (["status", "--iland"], "--iland: unknown option\nSee evoctl status --help")):
             self.assertEqual(self.evoctl(*words, status=2), f"evoctl: {error}\n")
@@ -183,16 +186,19 @@ class Commands(WithServer):
             path.write_text('{"survivors": 3}')
             self.assertEqual(self.evoctl("create", "x", "--experiment", str(path), status=2),
                              "evoctl: --experiment: survivors (line 1): got 3, allowed 0 to 1\n")
-        self.assertEqual(self.evoctl("organism", "5000", status=1), "evoctl: ID: got 5000, allowed 0 to 49 (no such organism)\n")
+        self.assertEqual(self.evoctl("organism", "5000", status=1),
+                         "evoctl: no such organism\n  ID: got 5000, allowed 0 to 49\n")
 
     def test_run_wait_says_how_long_it_takes(self):
         def said(*words):
-            return waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True, text=True,
+            return waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True,
+                               text=True,
                                check=True).stderr.splitlines()
         self.evoctl("speed", "1")
         self.evoctl("set", "generation_s=1.5")
         self.evoctl("reset")
-        self.assertEqual(said("run", "2", "--wait")[0], "at 1x, a generation of 1.5 s takes 1.5 s: 2 generations take about 3.0 s; "
+        self.assertEqual(said("run", "2", "--wait")[0], "at 1x, a generation of 1.5 s takes 1.5 s: 2 generations take "
+                                                        "about 3.0 s; "
                                                         "evoctl speed max is faster")
         self.evoctl("speed", "100")
         lines = said("run", "2", "--wait")
@@ -220,10 +226,12 @@ class Commands(WithServer):
     def test_colours_are_for_terminals_only(self):
         self.evoctl("run")
         self.assertIn("\x1b[32mrunning\x1b[0m", self.on_terminal("status", NO_COLOR=""))
-        self.assertIn("\x1b[31mevoctl:\x1b[0m --world: got nowhere", self.on_terminal("--world", "nowhere", "pause", NO_COLOR=""))
+        self.assertIn("\x1b[31mevoctl:\x1b[0m no world has that name\r\n  --world: got nowhere",
+                      self.on_terminal("--world", "nowhere", "pause", NO_COLOR=""))
         for words in (["status"], ["--world", "nowhere", "pause"]):
             self.assertNotIn("\x1b", self.on_terminal(*words, NO_COLOR="1"))
-            done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True, text=True)
+            done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True,
+                               text=True)
             self.assertNotIn("\x1b", done.stdout + done.stderr)
 
     def test_worlds_are_created_named_and_deleted(self):
@@ -307,14 +315,16 @@ class Commands(WithServer):
     def test_unreadable_files_and_full_output_are_reported(self):
         with tempfile.TemporaryDirectory() as folder:
             for option, what in ("--experiment", "experiment"), ("--population", "population"):
-                for path, why in (folder, "this is a folder"), (folder + "/none", "cannot be read: No such file or directory"):
+                for path, why in (folder, "this is a folder"), (folder + "/none",
+                                                                "cannot be read: No such file or directory"):
                     self.assertIn(f"{path}: {why}", self.evoctl("create", "x", option, path, status=2))
             pipe, large = folder + "/pipe", folder + "/large"
             os.mkfifo(pipe, 0o600)
             with open(large, "wb") as file:
                 file.truncate(1 << 33)  # takes no space
             for path, why in (pipe, "this is a pipe"), ("/dev/zero", "this is a device"), (large, "too large for "):
-                for words in (["create", "x", "--experiment", path], ["create", "x", "--population", path], ["rate", path],
+                for words in (["create", "x", "--experiment", path], ["create", "x", "--population", path],
+                              ["rate", path],
                               ["place", "organism", "30,40", "--from", path], ["--token-file", path, "status"],
                               ["--ca", path, "status"], ["--tls", "--cert", path, "status"]):
                     if (words[0], why) != ("--token-file", "too large for "):  # other users can read it
@@ -348,8 +358,10 @@ class Commands(WithServer):
 
     def test_it_describes_and_completes(self):
         self.assertIn("0.2.0", self.evoctl("describe"))
-        for words, offered in ((["set", "mutation_ch"], ["mutation_chance="]), (["set", "selection=r"], ["selection=roulette",
-                                "selection=random"]), (["get", "mutation_ch"], ["mutation_chance"]), (["delete", "d"], ["default"]),
+        for words, offered in ((["set", "mutation_ch"], ["mutation_chance="]),
+                               (["set", "selection=r"], ["selection=roulette",
+                                "selection=random"]), (["get", "mutation_ch"], ["mutation_chance"]),
+                               (["delete", "d"], ["default"]),
                                (["--world", "d"], ["default"]), (["create", "x", "--set", "food_cou"], ["food_count="]),
                                (["speed", "m"], ["max"])):
             done = self.evoctl_completes("--server", self.address, *words)
@@ -390,9 +402,11 @@ class WithoutServer(unittest.TestCase):
             for given in ("1e99", "abc", "1.5", str(2**64), *(["-1"] if words[-1].startswith("--") else []),
                           *(["0"] if least > 0 else [])):
                 with self.subTest(words=words, given=given):
-                    done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words, given], capture_output=True, text=True)
+                    done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words, given], capture_output=True,
+                                       text=True)
                     self.assertEqual(done.returncode, 2)
-                    self.assertIn(f"evoctl: {name}: got {given}, allowed a whole number, {least} to {greatest}\n", done.stderr)
+                    self.assertIn(f"evoctl: {name}: got {given}, allowed a whole number, {least} to {greatest}\n",
+                                  done.stderr)
         for given in ("0", "-1", "nan", "soon"):
             done = waiting.run([EVOCTL, "--timeout", given, "status"], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2)

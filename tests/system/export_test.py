@@ -116,9 +116,12 @@ class Export(Runs):
                          self.evod_export("--what", "lineage", "--of", "4:1:3"))
         heading, *rows = self.evod_export("--what", "lineage").splitlines()
         later = [row for row in rows if int(row.split(",")[0]) >= 3]
-        self.assertEqual(self.table(client, table=c.RUN_TABLE_LINEAGE, first_generation=3)[0].splitlines(), [heading, *later])
-        ancestors = [row for row in self.evod_export("--what", "lineage", "--of", "4:1:3").splitlines() if row[0] not in "12"]
-        self.assertEqual(self.table(client, table=c.RUN_TABLE_LINEAGE, of=of, first_generation=3)[0].splitlines(), ancestors)
+        self.assertEqual(self.table(client, table=c.RUN_TABLE_LINEAGE, first_generation=3)[0].splitlines(),
+                         [heading, *later])
+        ancestors = [row for row in self.evod_export("--what", "lineage", "--of", "4:1:3").splitlines()
+                     if row[0] not in "12"]
+        self.assertEqual(self.table(client, table=c.RUN_TABLE_LINEAGE, of=of, first_generation=3)[0].splitlines(),
+                         ancestors)
         self.assertEqual(self.evoctl(server, "--what", "population", "--generation", "2"),
                          self.evod_export("--what", "population", "--generation", "2"))
 

@@ -1,6 +1,6 @@
 """Every scalar field of every client message, found in the server's descriptors, with the values
-that programs get wrong. Each is done, or refused with the field that is at fault; what is refused has changed nothing, and
-afterwards the world is equal to an untouched one. EVOD and EVOCTL name the programs, MESSAGES the folder of the
+that programs get wrong. Each is done, or refused with the field that is at fault; what is refused has changed nothing,
+and afterwards the world is equal to an untouched one. EVOD and EVOCTL name the programs, MESSAGES the folder of the
 message classes."""
 import pathlib
 import re
@@ -124,7 +124,8 @@ class Walk(access.Access):
         for world in ("walked", "untouched"):
             self.client.call(set_speed=c.SetSpeed(world=world, speed=plain.w.Speed(max=True)))
             self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=200))
-            hashes.add(plain.until(lambda: (lambda w: w.tick == 200 and w.state_hash)(self.client.world(world)), "ticks"))
+            hashes.add(plain.until(lambda: (lambda w: w.tick == 200 and w.state_hash)(self.client.world(world)),
+                                   "ticks"))
         self.assertEqual(len(hashes), 1)
         self.server_.process.terminate()
         self.assertEqual(waiting.ended(self.server_.process), 0, self.server_.output())
@@ -265,7 +266,8 @@ class Walk(access.Access):
                                 if 0 <= x < 2**32 and not one.min <= x <= one.max]
                 elif one.kind == kinds.PARAMETER_KIND_REAL:
                     inside = [dict(real=one.min), dict(real=one.max)]
-                    outside += [dict(real=x) for x in (one.min - 1, one.max + 1, -1e300, 2.0**63) if not one.min <= x <= one.max]
+                    outside += [dict(real=x) for x in (one.min - 1, one.max + 1, -1e300, 2.0**63)
+                                if not one.min <= x <= one.max]
                 elif one.kind == kinds.PARAMETER_KIND_CHOICE:
                     inside = [dict(choice=x) for x in one.choices]
                     outside += [dict(choice=x) for x in ("", "nonsense", "x\0y", "n" * (LONG - 4096))] + [dict(count=0)]
@@ -288,7 +290,8 @@ class Walk(access.Access):
         self.assertTrue(minus_zero)
         for one in minus_zero:  # -0 equals 0
             statuses = [self.send(build(one, True, real=zero)) for zero in (0.0, -0.0)]
-            self.assertEqual(*[[status.code, *(violation.field for violation in status.violations)] for status in statuses])
+            self.assertEqual(*[[status.code, *(violation.field for violation in status.violations)]
+                               for status in statuses])
 
     def test_the_fields_of_a_hello_and_of_acknowledgements(self):
         hello = self.pool.FindMessageTypeByName("evod.v1.Hello")
@@ -302,7 +305,8 @@ class Walk(access.Access):
                         self.assertTrue(first.goodbye.status.code and first.goodbye.status.message)
                         stranger.assert_closed()
         acknowledgement = self.pool.FindMessageTypeByName("evod.v1.AcknowledgeSnapshot")
-        number = {f.name: f for f in self.pool.FindMessageTypeByName("evod.v1.ClientMessage").fields}["acknowledge_snapshot"].number
+        number = {f.name: f for f in self.pool.FindMessageTypeByName(
+            "evod.v1.ClientMessage").fields}["acknowledge_snapshot"].number
         subscription = self.client.call(subscribe_snapshots=c.SubscribeSnapshots(
             world="walked", rate_hz=60, unacknowledged_max=2)).subscription.subscription_id
         for field in acknowledgement.fields:

@@ -15,7 +15,8 @@ import unittest
 import namespaces
 
 if __name__ == "__main__":
-    namespaces.enter(["--mount"], ["mount", "-t", "tmpfs", "-o", "size=1m", "none", "/mnt"], "no tmpfs may be mounted here")
+    namespaces.enter(["--mount"], ["mount", "-t", "tmpfs", "-o", "size=1m", "none", "/mnt"],
+                     "no tmpfs may be mounted here")
 
 import recovery_test as recovery  # noqa: E402
 import waiting  # noqa: E402
@@ -36,7 +37,8 @@ class Client(recovery.Client):
         return next(m.response for m in iter(self.receive, None) if m.HasField("response"))
 
     def storage_states(self, until):
-        """The states of the disk in events, up to that state, except BEHIND, which may come while the machine is busy."""
+        """The states of the disk in events, up to that state, except BEHIND, which may come while the machine is
+        busy."""
         states = []
         while not states or states[-1] != until:
             event = next(m.event for m in iter(self.receive, None) if m.HasField("event"))
@@ -91,8 +93,8 @@ class FullDisk(unittest.TestCase):
         return client
 
     def fill(self):
-        """Fills the disk. A reader keeps the log of the run file in existence: otherwise SQLite would delete it, and free space,
-        when the server closes the file before it tries again."""
+        """Fills the disk. A reader keeps the log of the run file in existence: otherwise SQLite would delete it, and
+        free space, when the server closes the file before it tries again."""
         reader = sqlite3.connect(f"file:{self.data}/default.evod?mode=ro", uri=True)
         reader.execute("SELECT count(*) FROM journal").fetchall()
         self.readers.append(reader)
@@ -188,8 +190,10 @@ class FullDisk(unittest.TestCase):
         before = control.world()
         self.fill_and_ask_for_what_cannot_be_written(server, control)
         server.end(status=4)
-        self.assertRegex(server.output(), r'world "default": \d+ bytes could not be written: the results of \d+ generations, '
-                                          f"1 commands, and the last tick. {self.data}/default.evod contains every acknowledged command")
+        self.assertRegex(server.output(), r'world "default": \d+ bytes could not be written: the results of \d+ '
+                                          r'generations, '
+                                          f"1 commands, and the last tick. {self.data}/default.evod contains every "
+                                          "acknowledged command")
         self.make_room()
         server = self.serve()
         now = self.client(server, "control").world()
@@ -282,14 +286,16 @@ class FullDisk(unittest.TestCase):
         self.assertEqual(last.tick, 220)
         until(lambda: b"again" in os.pread(watching.fileno(), 1 << 16, 0), "the end of the trouble")
         said = os.pread(watching.fileno(), 1 << 16, 0).decode()
-        self.assertRegex(said, r"^commands are refused: .*full.*\nworlds wait for the disk, commands are refused: (.*\n)+"
+        self.assertRegex(said, r"^commands are refused: .*full.*\nworlds wait for the disk, commands are refused: "
+                               r"(.*\n)+"
                                r"run files can be written again\n$")
         server.end()
         self.verify()
 
     def test_a_run_without_a_server_ends_and_continues(self):
         self.mount(1)
-        run = [recovery.evod, "run", "--set", "generation_s=2", "--set", "population_size=200", "--set", "island_count=2",
+        run = [recovery.evod, "run", "--set", "generation_s=2", "--set", "population_size=200", "--set",
+               "island_count=2",
                "--generations", "40", "--threads", "1", "--seed", "3", "--run-file"]
         mpirun = os.environ.get("MPIRUN", "")
         for kind, prefix in ("alone", []), ("shared", [mpirun, "-n", "2"]):
@@ -297,13 +303,15 @@ class FullDisk(unittest.TestCase):
                 continue
             file = f"{self.data}/{kind}.evod"
             with self.subTest(kind):
-                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
+                done = waiting.run([*prefix, *run, file], capture_output=True, text=True,
+                                   env={**os.environ, **OPEN_MPI})
                 self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
                 self.assertEqual(len(re.findall("^evod: ", done.stderr, re.MULTILINE)), 1, done.stderr)
                 self.assertIn("full", done.stderr)
                 printed = [line for line in done.stdout.splitlines() if line[:10].strip().isdigit()]
                 subprocess.run(["mount", "-o", "remount,size=100m", self.data], check=True)
-                done = waiting.run([*prefix, *run, file], capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
+                done = waiting.run([*prefix, *run, file], capture_output=True, text=True,
+                                   env={**os.environ, **OPEN_MPI})
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                 self.assertIn(f"\ncontinues at generation {len(printed) // 2 + 1}\n", done.stdout)
                 done = waiting.run([recovery.evod, "verify", file], capture_output=True, text=True)

@@ -1,5 +1,5 @@
-"""Chromosomes of more than six genes as a user meets them: kills, forks, replays, tables, population files, sweeps and refusals. EVOD
-and EVOCTL name the programs, MESSAGES the folder of the message classes."""
+"""Chromosomes of more than six genes as a user meets them: kills, forks, replays, tables, population files, sweeps and
+refusals. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes."""
 import csv
 import io
 import json
@@ -16,7 +16,8 @@ w = plain.w
 SMALL = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2}
 WORLDS = {
     "free": {**SMALL, "free_genes": 10, "mutate_group": "free"},
-    "net": {**SMALL, "controller": "network", "sense_speed": True, "sense_health": True, "sense_wall": True, "brain_hidden": 32},
+    "net": {**SMALL, "controller": "network", "sense_speed": True, "sense_health": True, "sense_wall": True,
+            "brain_hidden": 32},
 }
 GENES = {"free": 16, "net": 328}
 INVALID = 3
@@ -43,7 +44,8 @@ class Genes(access.Access):
         server = self.serve("--speed", "max")
         client = self.come(server)
         for name, setting in WORLDS.items():
-            self.evoctl("create", name, "--seed", "7", "--experiment", self.file(f"{name}.json", setting), server=server)
+            self.evoctl("create", name, "--seed", "7", "--experiment", self.file(f"{name}.json", setting),
+                        server=server)
             client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
             client.run_to(250, name)
         return server, client
@@ -101,7 +103,8 @@ class Genes(access.Access):
             for gene in names[name]:
                 mean = sum(float(row[gene]) for row in population[:12]) / 12
                 self.assertAlmostEqual(float(statistics[0][f"{gene}_mean"]), mean, places=3)
-                parts = [float(statistics[2][f"{gene}_{part}"]) for part in ("selection", "transmission", "migration", "change")]
+                parts = [float(statistics[2][f"{gene}_{part}"])
+                         for part in ("selection", "transmission", "migration", "change")]
                 self.assertAlmostEqual(sum(parts[:3]), parts[3], delta=1e-9 * max(1, *map(abs, parts)))
             bundle = pathlib.Path(self.folder, f"{name}-bundle")
             evod("export", run, "--bundle", bundle)
@@ -113,7 +116,8 @@ class Genes(access.Access):
         server, client = self.begin()
         for name, setting in WORLDS.items():
             path = f"{self.folder}/{name}.csv"
-            self.evoctl("--world", name, "export", "--what", "population", "--generation", "2", "--output", path, server=server)
+            self.evoctl("--world", name, "export", "--what", "population", "--generation", "2", "--output", path,
+                        server=server)
             self.evoctl("create", f"{name}-copy", "--population", path, "--experiment", f"{self.folder}/{name}.json",
                         server=server)
             copied = client.call(get_population=c.GetPopulation(world=f"{name}-copy", island=1)).population
@@ -121,21 +125,25 @@ class Genes(access.Access):
             genes = memoryview(copied.genes).cast("f")
             for row in range(12):
                 for column, gene in enumerate(client.world(name).gene_names):
-                    self.assertEqual(genes[column * 12 + row], memoryview(struct.pack("f", float(original[12 + row][gene]))).cast("f")[0])
+                    self.assertEqual(genes[column * 12 + row],
+                                     memoryview(struct.pack("f", float(original[12 + row][gene]))).cast("f")[0])
         text = pathlib.Path(self.folder, "free.csv").read_text()
         for content, there, expected in ((text, "[6]: got the gene free0", "allowed no gene"),
-                                         (text.replace("free3", "free33"), "[9]: got the gene free33", "allowed the gene free3")):
+                                         (text.replace("free3", "free33"), "[9]: got the gene free33",
+                                          "allowed the gene free3")):
             path = self.file("other.csv", content)
             setting = "free.json" if "free33" in content else "default.json"
             self.file("default.json", SMALL)
             for said in (evod("run", f"{self.folder}/{setting}", "--population", path, "--generations", 1, status=1),
-                         self.evoctl("create", "wrong", "--population", path, "--experiment", f"{self.folder}/{setting}",
+                         self.evoctl("create", "wrong", "--population", path, "--experiment",
+                                     f"{self.folder}/{setting}",
                                      server=server, status=2)):
                 self.assertIn(there, said)
                 self.assertIn(expected, said)
 
     def test_a_sweep_varies_the_number_of_genes(self):
-        sweep = self.file("sweep.json", {"experiment": {**SMALL, "fitness": "gene_sum"}, "grid": {"free_genes": [0, 10]},
+        sweep = self.file("sweep.json", {"experiment": {**SMALL, "fitness": "gene_sum"},
+                                         "grid": {"free_genes": [0, 10]},
                                          "replicates": 2, "seed": 7, "generations": 3})
         evod("sweep", sweep, "--out", f"{self.folder}/out")
         table = pathlib.Path(self.folder, "out/runs.csv").read_text()
@@ -149,9 +157,11 @@ class Genes(access.Access):
             (("free_genes=1001",), "free_genes: got 1001", "0 to 1000"),
             (("mutate_group=brain",), "mutate_group: got brain", "all, body"),
             (("free_gene_min=3",), "free_gene_max: got 1", "at least free_gene_min (3)"),
-            (("controller=network", "sense_food=false", "sense_poison=false"), "a network without inputs", "at least one sense"),
+            (("controller=network", "sense_food=false", "sense_poison=false"), "a network without inputs",
+             "at least one sense"),
             (("controller=network", "brain_hidden=33"), "brain_hidden: got 33", "1 to 32"),
-            (("fitness=gene_sum", "population_size=200000", "free_genes=700"), "free_genes: got 200000 organisms", "124000000"),
+            (("fitness=gene_sum", "population_size=200000", "free_genes=700"), "free_genes: got 200000 organisms",
+             "124000000"),
         ):
             said = self.evoctl("create", "wrong", "--set", *words, server=server, status=2)
             self.assertIn(field, said)
@@ -161,7 +171,8 @@ class Genes(access.Access):
         refused = client.call(INVALID, create_world=c.CreateWorld(
             name="wrong", parameters=plain.assignments(**WORLDS["free"]),
             population=[population_of(6), population_of(6)])).status
-        self.assertRegex(" ".join(f"{v.field} {v.got} {v.allowed}" for v in refused.violations), r"population.*(72|6).*(192|16)")
+        self.assertRegex(" ".join(f"{v.field} {v.got} {v.allowed}" for v in refused.violations),
+                         r"population.*(72|6).*(192|16)")
         refused = client.call(INVALID, place=c.Place(world="free", organisms=[
             c.PlacedOrganism(x_px=100, y_px=100, genes=[100] * 6)])).status
         self.assertRegex(" ".join(f"{v.field} {v.got} {v.allowed}" for v in refused.violations), r"genes.*6.*16")

@@ -3,10 +3,11 @@
     greedy_user.py MESSAGES PORT HTTP_PORT TOKEN WORLD ISLANDS POOL
 
 WORLD names a world with a stored run, ISLANDS one of many islands. Prints "ready" when the attack has got what it could
-get at first, and continues, also after refusals and closed connections, until its standard input ends. Then it prints its
-counts as JSON: "taken" and "refused" requests, "closed" connections (by the server) and "sent_bytes".
+get at first, and continues, also after refusals and closed connections, until its standard input ends. Then it prints
+its counts as JSON: "taken" and "refused" requests, "closed" connections (by the server) and "sent_bytes".
 
-Most attacks use SESSIONS sessions with the token. "sessions", "strangers" and "http" open as many connections as they get.
+Most attacks use SESSIONS sessions with the token. "sessions", "strangers" and "http" open as many connections as they
+get.
 """
 import itertools
 import json
@@ -76,8 +77,8 @@ class Connection:
 
 
 class Session(Connection):
-    """A session that keeps `in_flight` requests unanswered. next_request(session, response) returns the next request, or
-    None; response is that of the previous one, or None at first."""
+    """A session that keeps `in_flight` requests unanswered. next_request(session, response) returns the next request,
+    or None; response is that of the previous one, or None at first."""
 
     def __init__(self, next_request, in_flight=1, reads=True):
         self.next_request, self.in_flight = next_request, in_flight
@@ -127,7 +128,8 @@ class Session(Connection):
 
 
 def hold(make, number, ready):
-    """Keeps so many connections open, and opens a new one for each that ends. ready(connections): the attack is running."""
+    """Keeps so many connections open, and opens a new one for each that ends. ready(connections): the attack is
+    running."""
     poller, connections, said = select.epoll(), {}, False
 
     def add():
@@ -151,7 +153,8 @@ def hold(make, number, ready):
                     raise Ended
                 continue
             connection = connections[descriptor]
-            gone = bool(event & (select.EPOLLHUP | select.EPOLLERR)) or (not connection.reads and event & select.EPOLLRDHUP)
+            gone = bool(event & (select.EPOLLHUP | select.EPOLLERR)) or (not connection.reads
+                                                                         and event & select.EPOLLRDHUP)
             if not gone and event & (select.EPOLLIN | select.EPOLLRDHUP) and connection.reads:
                 gone = not connection.receive() or (isinstance(connection, Session) and not connection.handle())
             if gone or not connection.open:
@@ -193,7 +196,8 @@ def replays_of(name, moment, then=(), again=()):
         refused = response is not None and response.status.code
         if again and session.replays and (refused or len(session.replays) == 4):
             session.state["round"] = session.state.get("round", -1) + 1
-            session.state["todo"] = [request(session.replays[session.state["round"] % len(session.replays)]) for request in again]
+            session.state["todo"] = [request(session.replays[session.state["round"] % len(session.replays)])
+                                     for request in again]
             return session.state["todo"].pop(0)
         return {"open_replay": c.OpenReplay(world=name, at=moment)}
     return next_request
@@ -210,12 +214,14 @@ def strangers():
 
 def http():
     numbers = itertools.count()
-    requests = (b"", b"GET / HTTP/1.1\r\nHost: 127.0.0.1", b"GET /page.js HTTP/1.1\r\nHost: 127.0.0.1:%s\r\n\r\n" % http_port.encode())
+    requests = (b"", b"GET / HTTP/1.1\r\nHost: 127.0.0.1",
+                b"GET /page.js HTTP/1.1\r\nHost: 127.0.0.1:%s\r\n\r\n" % http_port.encode())
     hold(lambda: Connection(http_port, requests[next(numbers) % 3], reads=False), CONNECTIONS,
          lambda all: len(all) >= 60 or counts["closed"] > 20)
 
 
-AT_MAX = (lambda name: {"set_speed": c.SetSpeed(world=name, speed=w.Speed(max=True))}, lambda name: {"run": c.Run(world=name)})
+AT_MAX = (lambda name: {"set_speed": c.SetSpeed(world=name, speed=w.Speed(max=True))},
+          lambda name: {"run": c.Run(world=name)})
 
 
 def replays():
@@ -229,7 +235,8 @@ def seeks():
         # The last ticks of a long generation have to be simulated from its beginning.
         return {"open_replay": c.OpenReplay(world="long", at=c.RunMoment(generation=1, tick=FAR - next(numbers) % 100))}
     hold(lambda: Session(next_request, 4), SESSIONS,
-         lambda all: sum(session.unanswered for session in all) >= 4 * SESSIONS or counts["taken"] + counts["refused"] > 0)
+         lambda all: sum(session.unanswered for session in all) >= 4 * SESSIONS
+         or counts["taken"] + counts["refused"] > 0)
 
 
 def exports():
@@ -260,7 +267,8 @@ def simulated_exports():
 
 def breeding():
     numbers = itertools.count()
-    of_sessions(lambda *_: {"get_breeding": c.GetBreeding(world="sparse", generation=1 + next(numbers) % 5)}, IN_FLIGHT, taken=1)
+    of_sessions(lambda *_: {"get_breeding": c.GetBreeding(world="sparse", generation=1 + next(numbers) % 5)}, IN_FLIGHT,
+                taken=1)
 
 
 def queries():
@@ -271,7 +279,8 @@ def queries():
 
 
 def mailbox():
-    """Commands to own replays, and requests to live worlds, by so many sessions that one user could fill the mailbox."""
+    """Commands to own replays, and requests to live worlds, by so many sessions that one user could fill the
+    mailbox."""
     def next_request(session, response):
         if response is not None and response.HasField("world") and response.world.HasField("replay"):
             session.replays = [response.world.name]
@@ -298,7 +307,8 @@ def answers():
             session.replays = [response.world.name]
         if not session.id:
             return {"open_replay": c.OpenReplay(world=world, at=c.RunMoment(generation=1))}
-        return {"pause": c.Pause(world=session.replays[0]), "client_key": f"{next(keys):x}"} if session.replays else None
+        return {"pause": c.Pause(world=session.replays[0]),
+                "client_key": f"{next(keys):x}"} if session.replays else None
     of_sessions(next_request, IN_FLIGHT, taken=2000)
 
 
@@ -308,7 +318,8 @@ def memory():
         number = session.id
         if number < 4:
             return {"subscribe_snapshots": c.SubscribeSnapshots(
-                world=islands, rate_hz=1 + number, codec=stream_pb2.CODEC_DELTA, view=c.View(detail=stream_pb2.DETAIL_DENSITY))}
+                world=islands, rate_hz=1 + number, codec=stream_pb2.CODEC_DELTA,
+                                                                view=c.View(detail=stream_pb2.DETAIL_DENSITY))}
         if number % 50 == 0:
             return {"get_population": c.GetPopulation(world="big")}
         return {"request_keyframe": c.RequestKeyframe(subscription_id=1 + number % 4)}
@@ -321,15 +332,18 @@ def memory():
 
 
 def events():
-    """Replays of short generations at maximum speed, half as many as there may be, and subscriptions to their events."""
-    subscribe = (lambda name: {"subscribe_events": c.SubscribeEvents(world=name)}, lambda _: {"subscribe_events": c.SubscribeEvents()})
+    """Replays of short generations at maximum speed, half as many as there may be, and subscriptions to their
+    events."""
+    subscribe = (lambda name: {"subscribe_events": c.SubscribeEvents(world=name)},
+                 lambda _: {"subscribe_events": c.SubscribeEvents()})
     again = (lambda name: {"seek": c.Seek(world=name, to=c.RunMoment(generation=1))}, AT_MAX[1])
     of_replays(replays_of(world, c.RunMoment(generation=1), subscribe + AT_MAX, again), SESSIONS // 2)
 
 
 FAR = int(os.environ.get("FAR_TICK", 100))
 attacks = {attack.__name__: attack for attack in (
-    sessions, strangers, http, replays, seeks, exports, simulated_exports, breeding, queries, mailbox, frames, answers, memory, events)}
+    sessions, strangers, http, replays, seeks, exports, simulated_exports, breeding, queries, mailbox, frames, answers,
+                                                  memory, events)}
 if __name__ == "__main__":
     try:
         attacks[pool]()

@@ -37,7 +37,8 @@ class HalfOpen(unittest.TestCase):
         lap()
         gone = time.monotonic()
         subprocess.run(["ip", "link", "set", "lo", "down"], check=True)
-        waiting.until(lambda: server.output().count("disconnected") == 2, "both are noticed", stalled_s=2 * found_within_s)
+        waiting.until(lambda: server.output().count("disconnected") == 2, "both are noticed",
+                      stalled_s=2 * found_within_s)
         self.assertLess(time.monotonic() - gone, found_within_s)
         server.end()
 

@@ -1,4 +1,5 @@
-"""Help, man pages and completions: each contains every option and command of its program. EVOD and EVOCTL name the programs."""
+"""Help, man pages and completions: each contains every option and command of its program. EVOD and EVOCTL name the
+programs."""
 import os
 import pathlib
 import re
@@ -65,14 +66,16 @@ class Generated(unittest.TestCase):
     def test_help_lists_what_is_known_to_exist(self):
         evod, evoctl = (dict((words, (options, commands)) for words, options, commands in listed)
                         for listed in self.programs.values())
-        self.assertLessEqual({"--help", "--version", "--port", "--tls-cert", "--data", "--seed", "--log-level"}, evod[()][0])
+        self.assertLessEqual({"--help", "--version", "--port", "--tls-cert", "--data", "--seed", "--log-level"},
+                             evod[()][0])
         self.assertLessEqual({"run", "sweep", "replay", "token", "help", "complete", "man"}, set(evod[()][1]))
         self.assertLessEqual({"--role", "--data"}, evod["token", "add"][0])
         self.assertLessEqual({"create", "run", "set", "top", "help", "complete", "man"}, set(evoctl[()][1]))
         self.assertLessEqual({"--dry-run", "--at-tick"}, evoctl["set",][0])
 
     def test_options_have_headings(self):
-        for program, headings in (("evod", ["Listening", "Access and TLS", "Storage", "First world", "Log", "Experiments"]),
+        for program, headings in (("evod", ["Listening", "Access and TLS", "Storage", "First world", "Log",
+                                            "Experiments"]),
                                   ("evoctl", ["Connection", "Worlds", "Run", "Parameters", "Look", "Follow", "Help"])):
             text = printed(program, "--help")
             for heading in headings:
@@ -95,8 +98,10 @@ class Generated(unittest.TestCase):
                 self.assertLessEqual(options, set(offered[2 * i].split()), words)
                 self.assertLessEqual(set(commands), set(offered[2 * i + 1].split()), words)
         chosen = complete("evod", ["evod export x.evod --what l", "evod complete ", "evod sw", "evod run --se"])
-        self.assertEqual([line.split() for line in chosen], [["lineage"], ["bash", "zsh", "fish"], ["sweep"], ["--seed", "--set"]]
-                         if complete is not in_fish else [["lineage"], ["bash", "fish", "zsh"], ["sweep"], ["--seed", "--set"]])
+        self.assertEqual([line.split() for line in chosen], [["lineage"], ["bash", "zsh", "fish"], ["sweep"],
+                                                             ["--seed", "--set"]]
+                         if complete is not in_fish else [["lineage"], ["bash", "fish", "zsh"], ["sweep"],
+                                                          ["--seed", "--set"]])
 
     def test_bash_offers_everything(self):
         self.check_shell(in_bash)

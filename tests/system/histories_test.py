@@ -1,7 +1,8 @@
-"""Random histories of real servers: whatever stops a server, its worlds equal those of a server that was never stopped. EVOD
-and EVOCTL name the programs, MESSAGES the folder of the message classes. tests/histories plays many more, in one process.
+"""Random histories of real servers: whatever stops a server, its worlds equal those of a server that was never stopped.
+EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes. tests/histories plays many more, in one
+process.
 
-    histories_test.py      HISTORIES (10) histories, the first with the seed HISTORIES_SEED (1); MPIRUN is set: some servers
+    histories_test.py      HISTORIES (10) histories, the first with the seed HISTORIES_SEED (1); MPIRUN: some servers
                            share their worlds between two processes
 """
 import os
@@ -17,7 +18,8 @@ ACTIONS = 50
 WORLDS_MAX = 4
 VALUES = {  # of parameters that change while a world runs
     "food_health": (0.0, 60.0), "poison_harm": (0.0, 60.0), "mutation_chance": (0.0, 1.0), "population_size": (1, 30),
-    "generation_s": (0.3, 1.5), "damping": (0.9, 1.0), "food_count": (0, 30), "elite_count": (0, 40), "crate_count": (0, 3),
+    "generation_s": (0.3, 1.5), "damping": (0.9, 1.0), "food_count": (0, 30), "elite_count": (0, 40),
+          "crate_count": (0, 3),
 }
 KINDS = ({}, {"controller": "network"}, {"island_count": 3, "migration": "ring", "migration_epoch": 1},
          {"fitness": "rastrigin", "island_count": 2}, {"free_genes": 3, "island_count": 2})
@@ -63,7 +65,8 @@ class History:
 
     def create(self):
         name = self.name()
-        parameters = {"population_size": self.chance.choice((1, 2, 3, 7, 50)), "generation_s": self.chance.uniform(0.2, 1.0),
+        parameters = {"population_size": self.chance.choice((1, 2, 3, 7, 50)),
+                      "generation_s": self.chance.uniform(0.2, 1.0),
                       "food_count": self.chance.choice((0, 20)), "poison_count": 10, **self.chance.choice(KINDS)}
         self.appear(name, self.send(create_world=c.CreateWorld(
             name=name, seed=self.chance.randrange(1000), parameters=plain.assignments(**parameters))))
@@ -88,7 +91,8 @@ class History:
             world=world, parameters=plain.assignments(**{name: draw(*VALUES[name]) for name in names}), **at))
 
     def place(self, world):
-        items = [c.PlacedItem(kind=c.ITEM_KIND_FOOD, x_px=self.chance.uniform(20, 1200), y_px=self.chance.uniform(20, 700))]
+        items = [c.PlacedItem(kind=c.ITEM_KIND_FOOD, x_px=self.chance.uniform(20, 1200),
+                              y_px=self.chance.uniform(20, 700))]
         self.send(place=c.Place(world=world, items=items))
 
     def remove(self, world):
@@ -142,7 +146,8 @@ class History:
 
     def compare(self):
         for world in self.ticks:
-            for request in ({"get_statistics": c.GetStatistics(world=world)}, {"get_parameters": c.GetParameters(world=world)},
+            for request in ({"get_statistics": c.GetStatistics(world=world)},
+                            {"get_parameters": c.GetParameters(world=world)},
                             {"get_history": c.GetHistory(world=world)},
                             {"get_population": c.GetPopulation(world=world, with_life=True)}):
                 self.assert_equal([client.call(**request) for client in (self.client, self.undisturbed)], str(request))

@@ -22,7 +22,8 @@ from delta_decoder import Decoder  # noqa: E402
 c, w = plain.c, plain.w
 MEMORY_BACK_BYTES = math.inf if os.environ.get("SANITIZED") else 8 << 20
 STEPS, STEP_TICKS = 10, 200
-STALLED_S, FRAME_S, HELLO_S = (plain.limit(name) for name in ("stalled_timeout_s", "frame_timeout_s", "hello_timeout_s"))
+STALLED_S, FRAME_S, HELLO_S = (plain.limit(name) for name in ("stalled_timeout_s", "frame_timeout_s",
+                                                              "hello_timeout_s"))
 PAUSE_S = int(os.environ.get("PAUSE_S", 15))
 PARAMETERS = {"population_size": 500, "scale_with_population": True}
 
@@ -64,7 +65,8 @@ class Attacked(unittest.TestCase):
         with plain.Client(self.server) as control, plain.Client(self.server) as viewer:
             self.begin_world(control)
             viewer.decoder = Decoder(plain.zstd_content)
-            viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=20, codec=plain.stream_pb2.CODEC_DELTA))
+            viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=20,
+                                                                 codec=plain.stream_pb2.CODEC_DELTA))
             self.honest(viewer, control, 1)
             before = self.memory_bytes()
             with Attack(MESSAGES, self.server.port, kind, number) as attack:
@@ -102,7 +104,8 @@ class Hostile(Attacked):
 
     def test_fifty_thousand_malformed_frames_a_second(self):
         # With a slow attacker as many answers wait as allowed; the heap does not shrink for one session.
-        self.attacked("malformed", 50_000, memory_back_bytes=MEMORY_BACK_BYTES + plain.limit("queued_response_bytes_max"),
+        self.attacked("malformed", 50_000, memory_back_bytes=MEMORY_BACK_BYTES +
+                      plain.limit("queued_response_bytes_max"),
                       enough=lambda counts: counts["frames"] > 1000)
 
     def test_a_pausing_reader_is_closed_and_reconnects(self):

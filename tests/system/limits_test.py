@@ -1,8 +1,9 @@
-"""Every limit of docs/OPERATIONS.md driven to its edge over real sockets: at the limit it works, beyond it what the table
-says happens, and everybody else goes on. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes.
+"""Every limit of docs/OPERATIONS.md driven to its edge over real sockets: at the limit it works, beyond it what the
+table says happens, and everybody else goes on. EVOD and EVOCTL name the programs, MESSAGES the folder of the message
+classes.
 
 Driven elsewhere: waiting_events_max by tests/unit/runtime/outbox_test.cpp, for nothing outside can hold the network's
-thread still; lease_s, with all about leases, and running out of file descriptors by plain_client.py.
+thread still; lease_s, with all about leases, and running out of file descriptors by protocol_*_test.py.
 """
 import contextlib
 import pathlib
@@ -396,7 +397,8 @@ class Requests(Case):
         first = client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1))
         for i in range(limits.client_keys_max // 2 - 2):  # and "old"; a user has half of the keys
             client.call(client_key=f"key {i}", request_id=1, pause=c.Pause(world="default"))
-        self.assertEqual(client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1)), first)
+        self.assertEqual(client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1)),
+                         first)
         with self.meets(client, "client_keys_max"):
             for i in range(limits.client_keys_max):
                 client.call(client_key=f"another {i}", request_id=1, pause=c.Pause(world="default"))
@@ -511,7 +513,8 @@ class Unread(Case):
             plain.until(lambda: "closed: the sessions of one user use more than" in server.output(), "one is closed")
         if not SANITIZED:  # sanitizers keep freed memory
             self.assertLess(memory_kib(server), (limits.client_buffer_bytes_max >> 10) + (100 << 10))
-        closed = re.findall(r"closed: the sessions of one user use more than 128 MiB of memory, and this one uses (\d+) KiB", server.output())
+        closed = re.findall(r"closed: the sessions of one user use more than 128 MiB of memory, and this one uses "
+                            r"(\d+) KiB", server.output())
         self.assertLess(len(closed), 10)
         self.assertGreater(min(map(int, closed)), 1024)
         self.assertEqual(modest.response(modest.request_id).status.code, OK)  # sessions with little memory continue

@@ -1,5 +1,5 @@
-"""evoctl ends when its server, its world or its answer is gone. The test is the server. EVOCTL names the program, MESSAGES the
-folder with the generated messages."""
+"""evoctl ends when its server, its world or its answer is gone. The test is the server. EVOCTL names the program,
+MESSAGES the folder with the generated messages."""
 import os
 import socket
 import struct
@@ -107,7 +107,8 @@ class Worlds(Case):
             if kind == "subscribe_events":
                 return request
             world = w.WorldInfo(name="lesson", state=w.RUN_STATE_RUNNING, generation=1)
-            session.answer(request, **({"statistics": c.Statistics(world=world)} if kind == "get_statistics" else {"worlds": c.WorldList()}))
+            session.answer(request, **({"statistics": c.Statistics(world=world)} if kind == "get_statistics"
+                                       else {"worlds": c.WorldList()}))
 
     def follow(self, *words):
         """Lets evoctl follow a world that is gone after a reconnection."""

@@ -1,5 +1,5 @@
-"""The memory that clients make the server hold, compared with the memory that it counts, and with its limits. A viewer does
-what costs most; the memory of the server must stay below the documented bound, and an administrator is served.
+"""The memory that clients make the server hold, compared with the memory that it counts, and with its limits. A viewer
+does what costs most; the memory of the server must stay below the documented bound, and an administrator is served.
 
 EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes.
 """
@@ -52,8 +52,8 @@ class Attacks(access.Access):
         self.token("eve", VIEWER)
 
     def begin(self):
-        """A server with a paused world of many islands. A first viewer has received its snapshots, so what the server needs
-        for itself is allocated."""
+        """A server with a paused world of many islands. A first viewer has received its snapshots, so what the server
+        needs for itself is allocated."""
         server = self.serve("--durability", "relaxed", "--require-token")
         admin = self.come(server, self.secrets["ada"])
         admin.call(create_world=c.CreateWorld(name="many", seed=1, parameters=plain.assignments(
@@ -103,7 +103,8 @@ class Attacks(access.Access):
         return rss, counted
 
     def check(self, what, before, rss, counted, limit):
-        print(f"{what}: {before} MiB before, {rss} MiB at the most, of which {counted:.0f} MiB were counted", file=sys.stderr)
+        print(f"{what}: {before} MiB before, {rss} MiB at the most, of which {counted:.0f} MiB were counted",
+              file=sys.stderr)
         self.assertLess(rss, limit // MIB + BEYOND_MIB)
         self.assertLess(counted, limit // MIB * 5 / 8, "a user may hold half, and a check allows for some growth")
         self.assertGreater(counted, (rss - before) / 2 - 8, "most of the growth is counted")

@@ -70,8 +70,8 @@ class Case(past.Case):
     def get(self, server, path="/metrics", method="GET", **arguments):
         """Returns the answer; repeats the request if the server closes the connection without one.
 
-        The server does so after http_request_timeout_s, which a stall of the machine can exceed, and while the connections
-        of a crowd end.
+        The server does so after http_request_timeout_s, which a stall of the machine can exceed, and while the
+        connections of a crowd end.
         """
         arguments.setdefault("headers", {"Authorization": f"Bearer {server.token}"} if hasattr(server, "token") else {})
 
@@ -292,7 +292,8 @@ class Clients(Case, access.Access):
         self.assertEqual(metrics("evod_logins_failed_total"), 0)
         self.come(server, "evod_" + "0" * 64, come_from="127.0.0.2")
         self.come(server, come_from="127.0.0.3")  # a missing token is not a failed login
-        self.assertEqual(self.wait(server, lambda m: m("evod_logins_failed_total") > 0, "it")("evod_logins_failed_total"), 1)
+        self.assertEqual(self.wait(server, lambda m: m("evod_logins_failed_total") > 0,
+                                   "it")("evod_logins_failed_total"), 1)
 
     def test_a_viewer_may_query_metrics(self):
         secret = self.token("anna", access.VIEWER)
@@ -319,7 +320,8 @@ class Health(Case):
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (1, hard))
         with self.client(server) as client:
             client.ask(set_parameters=plain.set_parameters(mutation_chance=0.3))
-            ill = plain.until(lambda: (lambda a: a if a.status != 200 else None)(self.get(server, "/healthz")), "illness")
+            ill = plain.until(lambda: (lambda a: a if a.status != 200 else None)(self.get(server, "/healthz")),
+                              "illness")
             self.assertEqual(ill.status, 503)
             self.assertRegex(ill.text, r"^runs cannot be written: [^\n]*default\.evod[^\n]*\n$")
             self.assertNotIn(self.folder, ill.text)
@@ -340,7 +342,8 @@ class Health(Case):
                    for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir()}
         with stopped(threads["simulation"]):
             answer = self.get(server, "/healthz")
-            self.assertEqual((answer.status, answer.text), (503, f"the simulation has not responded for {SIMULATION_S} s\n"))
+            self.assertEqual((answer.status, answer.text), (503,
+                                                            f"the simulation has not responded for {SIMULATION_S} s\n"))
             self.assertEqual(self.get(server).status, 200)
         self.wait_well(server)
 
@@ -358,7 +361,8 @@ class Http(Case):
         plain.until(lambda: self.get(server, "/healthz?full=1").status == 200, "health")
         self.assertEqual(self.get(server, "/healthz", body=b"hello").status, 400)
         head, get = self.get(server, "/healthz", method="HEAD"), self.get(server, "/healthz")
-        self.assertEqual((head.status, head.text, head.headers["Content-Length"]), (200, "", get.headers["Content-Length"]))
+        self.assertEqual((head.status, head.text, head.headers["Content-Length"]),
+                         (200, "", get.headers["Content-Length"]))
 
     def test_a_connection_is_used_again(self):
         server = self.serve()
@@ -376,14 +380,16 @@ class Http(Case):
 
         def ask(_):
             pipeline = self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n" * 20 +
-                                b"GET /nowhere HTTP/1.0\r\nHost: localhost\r\n\r\n" + b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
+                                b"GET /nowhere HTTP/1.0\r\nHost: localhost\r\n\r\n" +
+                                b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
             text = read_all(pipeline)
             self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", text, re.M), [b"200"] * 20 + [b"404"])
         waiting.quicker_than(SIMULATION_S, ask)
 
     def test_an_invalid_request_is_answered_and_closed(self):
         server = self.serve()
-        for data, status in ((b"\x00\x01\x02\xff" * 100 + b"\r\n\r\n", b"400"), (b"EV\x01\x01\x08\0\0\0abcdefgh\r\n\r\n", b"400"),
+        for data, status in ((b"\x00\x01\x02\xff" * 100 + b"\r\n\r\n", b"400"),
+                             (b"EV\x01\x01\x08\0\0\0abcdefgh\r\n\r\n", b"400"),
                              (b"GET /metrics HTTP/9.9\r\n\r\n", b"400"), (b"GET\r\n\r\n", b"400"),
                              (b"GET /metrics HTTP/1.1\r\nbad header\r\n\r\n", b"400"),
                              (b"GET /metrics HTTP/1.1\r\nContent-Length: -1\r\n\r\n", b"400"),
@@ -403,15 +409,20 @@ class Http(Case):
                              ("Transfer-Encoding: chunked, identity", inner), ("Transfer-Encoding: chunked", chunked),
                              ("transfer-encoding:\tchunked", chunked), ("Transfer-Encoding:", inner),
                              ("Transfer-Encoding: gzip\r\nTransfer-Encoding: identity", inner),
-                             (f"Content-Length: {len(inner)}", inner), (f"Content-Length: {len(inner)}\r\nExpect: 100-continue", inner),
-                             (f"Content-Length: 0\r\nContent-Length: {len(inner)}", inner), (f"Content-Length: 0, {len(inner)}", inner),
+                             (f"Content-Length: {len(inner)}", inner),
+                             (f"Content-Length: {len(inner)}\r\nExpect: 100-continue", inner),
+                             (f"Content-Length: 0\r\nContent-Length: {len(inner)}", inner),
+                             (f"Content-Length: 0, {len(inner)}", inner),
                              ("Content-Length: 0\r\nTransfer-Encoding: chunked", chunked)):
             for path in ("/healthz", "/session", "/nowhere"):
                 with self.subTest(fields=fields, path=path):
-                    answer = read_all(self.raw(server, f"GET {path} HTTP/1.1\r\nHost: localhost\r\n{fields}\r\n\r\n".encode() + body))
+                    answer = read_all(self.raw(server,
+                                               f"GET {path} HTTP/1.1\r\nHost: localhost\r\n{fields}\r\n\r\n".encode() +
+                                               body))
                     self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", answer, re.M), [b"400"])
         # An empty body is none.
-        answer = read_all(self.raw(server, b"GET /nowhere HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\nExpect: 100-continue\r\n"
+        answer = read_all(self.raw(server, b"GET /nowhere HTTP/1.1\r\nHost: localhost\r\nContent-Length: 0\r\nExpect: "
+                                           b"100-continue\r\n"
                                            b"Connection: close\r\n\r\n"))
         self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", answer, re.M), [b"404"])
 
@@ -437,7 +448,8 @@ class Http(Case):
         server = self.serve()
         with self.meets(server, "http_request_timeout_s", 3) as limit:
             began = time.monotonic()
-            begun = [self.raw(server, data) for data in (b"", b"GET /metr", b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n")]
+            begun = [self.raw(server, data) for data in (b"", b"GET /metr",
+                                                         b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n")]
             for connection in begun:
                 self.assertEqual(read_all(connection), b"")
             self.assertGreater(time.monotonic() - began, limit - 0.5)
@@ -456,7 +468,8 @@ class Http(Case):
                     return [stack.enter_context(contextlib.closing(self.raw(server, request))) for _ in range(count)]
                 with stopped(threads["simulation"]):  # so that answers take SIMULATION_S
                     come(limit)
-                    text = plain.until(lambda: (lambda one: one if b" 503 " in one and b"open already" in one else None)(
+                    text = plain.until(lambda: (lambda one: one if b" 503 " in one and b"open already" in one
+                                                else None)(
                         waiting.receive(come(1)[0], 65536)), "too many").decode()
                     self.assertIn(f"{limit} connections are open already", text)
                     plain.until(lambda: read_all(come(1)[0]) == b"", "one is closed at once")
@@ -475,8 +488,10 @@ class Http(Case):
     def test_it_is_there_only_if_it_was_asked_for(self):
         server = self.server("--data", self.folder)
         self.assertNotIn("http", server.output())
-        for words, status, why in ((["--http-bind", "127.0.0.1"], 2, "--http-port"), (["--http-port", "70000"], 2, "70000"),
-                                   (["--http-port", "0", "--http-bind", "here"], 1, "allowed the IP address of an interface"),
+        for words, status, why in ((["--http-bind", "127.0.0.1"], 2, "--http-port"),
+                                   (["--http-port", "70000"], 2, "70000"),
+                                   (["--http-port", "0", "--http-bind", "here"], 1,
+                                    "allowed the IP address of an interface"),
                                    (["--http-port", str(server.port)], 1, "choose another port with --http-port")):
             done = waiting.run([EVOD, "--keep-nothing", "--port", "0", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, status, done.stderr)
@@ -490,7 +505,8 @@ class Top(Case):
         page = plain.until(lambda: (lambda one: one if re.search(world, one) else None)(
             self.evoctl(server, "top", "--once", "--interval", "0.2")), "ticks")
         self.assertRegex(page, rf"^evod \d\S* at 127\.0\.0\.1:{server.port}, up ")
-        for line in (r"memory +\d+ MiB", r"processor +\d+ %$", r"  network .* \d+ %  simulation .* \d+ %$", r"  replays .* \d+ %  storage .* \d+ %$", r"clients +1: 1 admin",
+        for line in (r"memory +\d+ MiB", r"processor +\d+ %$", r"  network .* \d+ %  simulation .* \d+ %$",
+                     r"  replays .* \d+ %  storage .* \d+ %$", r"clients +1: 1 admin",
                      r"logins +0 failed", r"requests +0 of 1024 waiting; \d+/s", r"disk +keeps up; "):
             self.assertRegex(page, f"(?m)^{line}")
         self.assertNotIn("\x1b", page)

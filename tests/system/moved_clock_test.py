@@ -36,7 +36,8 @@ class MovedClock(unittest.TestCase):
             server.log.close()
 
     def serve(self, folder, *options):
-        self.servers.append(Server("--data", f"{self.data}/{folder}", "--log-level", "debug", *options, env=self.environment))
+        self.servers.append(Server("--data", f"{self.data}/{folder}", "--log-level", "debug", *options,
+                                   env=self.environment))
         return self.servers[-1]
 
     def move(self, server, seconds):
@@ -52,12 +53,14 @@ class MovedClock(unittest.TestCase):
     def test_an_expired_certificate_shows_its_time(self):
         waiting.run([os.environ["EVOD"], "certificate", "localhost", "--folder", self.data], check=True)
         certificate = f"{self.data}/evod.crt"
-        server = Server("--data", f"{self.data}/tls", "--log-level", "debug", "--tls-cert", certificate, "--tls-key", f"{self.data}/evod.key")
+        server = Server("--data", f"{self.data}/tls", "--log-level", "debug", "--tls-cert", certificate, "--tls-key",
+                        f"{self.data}/evod.key")
         self.servers.append(server)
         for seconds, words in ((ten_years_s, r"it expired on \w+ +\d+ .* GMT: the server needs a new one"),
                                (-ten_years_s, r"it is valid from \w+ +\d+ .* GMT on: is this machine's clock right\?")):
             self.moved_s[:8] = struct.pack("<q", seconds)
-            done = waiting.run([os.environ["EVOCTL"], "--server", f"localhost:{server.port}", "--ca", certificate, "worlds"],
+            done = waiting.run([os.environ["EVOCTL"], "--server", f"localhost:{server.port}", "--ca", certificate,
+                                "worlds"],
                                capture_output=True, text=True, env=self.environment)
             self.assertEqual(done.returncode, 3)
             self.assertRegex(done.stderr, words)

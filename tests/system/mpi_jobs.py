@@ -33,7 +33,8 @@ def processes_by_rank(job):
 
 
 def kill(job):
-    """Kills the processes of a mpirun, which then ends. It removes their files from /dev/shm, so it must not be killed itself."""
+    """Kills the processes of a mpirun, which then ends. It removes their files from /dev/shm, so it must not be killed
+    itself."""
     ranks = processes_by_rank(job)
     for process in ranks.values():
         with contextlib.suppress(OSError):

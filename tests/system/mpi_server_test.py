@@ -1,5 +1,5 @@
-"""The server under mpirun: its processes share worlds, and a client sees the server of one process. EVOD and EVOCTL name the
-programs, MESSAGES the folder of the message classes."""
+"""The server under mpirun: its processes share worlds, and a client sees the server of one process. EVOD and EVOCTL
+name the programs, MESSAGES the folder of the message classes."""
 import contextlib
 import itertools
 import json
@@ -25,8 +25,8 @@ ISLANDS = {"population_size": 12, "generation_s": 0.5, "food_count": 20, "poison
            "obstacle_count": 2, "migration": "ring", "migration_epoch": 1, "migrant_count": 2}
 POSITIONS = [(x, y) for x in range(30, 600, 60) for y in range(30, 400, 60)]
 FULL_SPEED = w.Speed(max=True)
-# Fields that differ between two servers with the same worlds. Motion.cell_px depends on when contacts were last looked for
-# from the start.
+# Fields that differ between two servers with the same worlds. Motion.cell_px depends on when contacts were last looked
+# for from the start.
 OF_ONE_SERVER = {"request_id", "run_id", "ticks_per_s", "slowed", "storage", "by", "sequence", "subscription_id",
                  "dropped_count", "cell_px"}
 
@@ -112,7 +112,8 @@ class Steps:
         """Places food and a copy of an organism at the first free position."""
         genes = self.client.call(get_organism=c.GetOrganism(world=world, island=island, organism=2)).organism.genes
         for x, y in POSITIONS:
-            response = self.send(None, place=c.Place(world=world, island=island, items=[food(x, y), food(x, y)], organisms=[
+            response = self.send(None, place=c.Place(world=world, island=island, items=[food(x, y), food(x, y)],
+                                                     organisms=[
                 c.PlacedOrganism(x_px=x, y_px=y, genes=genes)]))
             if response.status.code == OK:
                 return response.placed
@@ -390,8 +391,10 @@ class Queries(Beside):
             population = self.both(get_population=c.GetPopulation(world="w", island=island, with_life=True)).population
             for organism in range(population.organism_count):
                 self.both(get_organism=c.GetOrganism(world="w", island=island, organism=organism))
-            self.both(NOT_FOUND, get_organism=c.GetOrganism(world="w", island=island, organism=population.organism_count))
-        for request in ({"get_motion": c.GetMotion(world="w", island=8)}, {"get_history": c.GetHistory(world="w", island=8)},
+            self.both(NOT_FOUND, get_organism=c.GetOrganism(world="w", island=island,
+                                                            organism=population.organism_count))
+        for request in ({"get_motion": c.GetMotion(world="w", island=8)},
+                        {"get_history": c.GetHistory(world="w", island=8)},
                         {"get_population": c.GetPopulation(world="w", island=8)},
                         {"get_organism": c.GetOrganism(world="w", island=8)},
                         {"subscribe_snapshots": c.SubscribeSnapshots(world="w", island=8, rate_hz=1)}):
@@ -458,7 +461,8 @@ class Faults(Case):
             present = int(statm.read().split()[0]) * resource.getpagesize()
         # Open MPI also needs some memory: its queues grow when a process is late.
         resource.prlimit(server.ranks()[1], resource.RLIMIT_AS, (present + (32 << 20), resource.RLIM_INFINITY))
-        crowd = assignments(population_size=300_000, scale_with_population=True, reference_population=50, island_count=3)
+        crowd = assignments(population_size=300_000, scale_with_population=True, reference_population=50,
+                            island_count=3)
         refused = client.call(EXHAUSTED, create_world=c.CreateWorld(name="crowd", seed=1, parameters=crowd)).status
         self.assertIn("not enough memory: nothing was changed", refused.message)
         self.assertEqual(client.world("shared").state_hash, before.state_hash)

@@ -18,7 +18,8 @@ EXPERIMENTS = {
     "ring": {**ISLANDS, "migration": "ring"},
     "fully connected": {**ISLANDS, "migration": "fully_connected", "migrant_count": 1},
     "random": {**ISLANDS, "migration": "random", "emigrants": "random", "immigrants_replace": "random"},
-    "a schedule": {**ISLANDS, "migration": "ring", "mutation_chance": {"1": 0.5, "3": 0.01}, "food_count": {"1": 20, "2": 5}},
+    "a schedule": {**ISLANDS, "migration": "ring", "mutation_chance": {"1": 0.5, "3": 0.01},
+                   "food_count": {"1": 20, "2": 5}},
     # Islands die out at different ticks, and some generations end before their time.
     "extinctions": {**ISLANDS, "migration": "ring", "food_count": 2, "health_loss_per_s": 45},
 }
@@ -38,7 +39,8 @@ def run(command, status=0):
 
 def evod(*words, **options):
     """A command of one process, without mpirun."""
-    return list(map(str, [EVOD, *words])), {"text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+    return list(map(str, [EVOD, *words])), {"text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE,
+                                            **options}
 
 
 def results(output):
@@ -106,7 +108,8 @@ class Run(Folder):
     def test_only_rank_0_reads_files(self):
         file = self.file(EXPERIMENTS["ring"])
         expected = results(run(evod("run", file, "--seed", 7)).stdout)
-        script = self.script(f'mkdir "{self.folder}/$OMPI_COMM_WORLD_RANK" && cd "{self.folder}/$OMPI_COMM_WORLD_RANK" && '
+        script = self.script(f'mkdir "{self.folder}/$OMPI_COMM_WORLD_RANK" && cd "{self.folder}/$OMPI_COMM_WORLD_RANK" '
+                             '&& '
                              f'[ $OMPI_COMM_WORLD_RANK = 0 ] && cp "{file}" .\n'
                              f'exec "{EVOD}" run experiment.json --seed 7\n')
         self.assertEqual(results(run(mpirun(3, script)).stdout), expected)
@@ -143,7 +146,8 @@ class Sweep(Folder):
                 out = self.folder / f"{processes}-{jobs}"
                 done = run(mpirun(processes, EVOD, "sweep", sweep, "--out", out, "--jobs", jobs))
                 self.assertEqual((out / "runs.csv").read_bytes(), expected)
-                self.assertRegex(done.stdout, rf"10 runs in [\d.]+ s, [\d.e+]+ per second; {processes * jobs} at a time")
+                self.assertRegex(done.stdout,
+                                 rf"10 runs in [\d.]+ s, [\d.e+]+ per second; {processes * jobs} at a time")
                 self.assertEqual(sorted(file.name for file in out.iterdir()), ["parts", "runs.csv", "sweep.txt"])
 
     def test_other_numbers_of_processes_resume_a_sweep(self):
@@ -172,7 +176,8 @@ class Sweep(Folder):
             (self.folder / f"{rank}").mkdir()
         script = self.script(f'cd "{self.folder}/$OMPI_COMM_WORLD_RANK" && exec "{EVOD}" sweep "{sweep}" --out mine\n')
         done = run(mpirun(2, script), status=1)
-        self.assertRegex(done.stderr, "evod: rank 1 on .*: mine is not the same folder as that of rank 0: name a folder of a "
+        self.assertRegex(done.stderr, "evod: rank 1 on .*: mine is not the same folder as that of rank 0: name a "
+                                      "folder of a "
                                       "shared file system with --out\n")
         self.assertEqual([file.name for file in self.folder.glob("*/mine/*") if file.is_file()], ["sweep.txt"] * 2)
 
@@ -188,13 +193,15 @@ class Refused(Folder):
     def test_more_processes_than_islands(self):
         file = self.file({**ISLANDS, "island_count": 2})
         self.refused(mpirun(3, EVOD, "run", file, "--csv", self.folder / "x.csv"), 2,
-                     "evod: 3 processes cannot share 2 islands: start at most one process per island, or set island_count\n")
+                     "evod: 3 processes cannot share 2 islands: start at most one process per island, or set "
+                     "island_count\n")
 
     def test_processes_with_different_commands(self):
         self.file(ISLANDS, "0.json")
         self.file(ISLANDS, "1.json")
         script = self.script(f'cd "{self.folder}" && exec "{EVOD}" run "$OMPI_COMM_WORLD_RANK.json" --csv x.csv\n')
-        self.refused(mpirun(2, script), 1, "evod: rank 1 on .* has read other files or options, or is another build of evod, "
+        self.refused(mpirun(2, script), 1, "evod: rank 1 on .* has read other files or options, or is another build of "
+                                           "evod, "
                                            "than rank 0 on .*: start all processes with the same program and files\n")
 
     def test_a_missing_experiment_is_named_once(self):
@@ -205,10 +212,12 @@ class Refused(Folder):
         shutil.copy(EVOD, alone)
         file = self.file(ISLANDS)
         self.refused(mpirun(2, alone, "run", file), 1,
-                     "evod: this process is one of several that mpirun has started, but the component evod_mpi cannot be "
+                     "evod: this process is one of several that mpirun has started, but the component evod_mpi cannot "
+                     "be "
                      "loaded: .*evod_mpi.so: .*")
         sweep = self.file(Sweep.MIXED, "sweep.json")
-        self.refused(mpirun(2, alone, "sweep", sweep, "--out", self.folder / "out"), 1, "Build evod with -DEVOD_BUILD_MPI=ON")
+        self.refused(mpirun(2, alone, "sweep", sweep, "--out", self.folder / "out"), 1,
+                     "Build evod with -DEVOD_BUILD_MPI=ON")
         self.assertFalse((self.folder / "out").exists())
         options = {"text": True, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
         self.assertIn("ended: generation_limit", run(([str(alone), "run", str(file)], options)).stdout)
@@ -219,13 +228,15 @@ class Refused(Folder):
         sweep = self.file(Sweep.MIXED)
         for option in ["--dry-run"], ["--gather"], ["--array-index", 0]:
             with self.subTest(option):
-                self.refused(mpirun(2, EVOD, "sweep", sweep, *option), 1, "are for one process: start it without mpirun\n")
+                self.refused(mpirun(2, EVOD, "sweep", sweep, *option), 1,
+                             "are for one process: start it without mpirun\n")
 
     def test_all_other_commands(self):
         for name, words in {"evod verify": ["verify", "no.evod"], "evod compare": ["compare", "no.json", "--controls"],
                             "evod check": ["check"], "evod replay": ["replay", "no.evod"]}.items():
             with self.subTest(name):
-                self.refused(mpirun(2, EVOD, *words), 2, f"evod: {name} cannot share its work among processes: start it "
+                self.refused(mpirun(2, EVOD, *words), 2, f"evod: {name} cannot share its work among processes: start "
+                                                         "it "
                                                          "without mpirun\n")
         self.assertIn("Experiments", run(mpirun(2, EVOD, "--help")).stdout)
 

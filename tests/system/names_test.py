@@ -33,7 +33,8 @@ class Names(past.Case):
         return self.server("--data", f"{self.folder}/runs", "--speed", "max", "--start")
 
     def at_once(self, client, *requests):
-        """Sends all requests at once, so that the server applies the last before the first is on the disk. Returns their statuses."""
+        """Sends all requests at once, so that the server applies the last before the first is on the disk. Returns
+        their statuses."""
         together, client.socket = client.socket, Gathering()
         asked = [client.ask(**request) for request in requests]
         gathered, client.socket = client.socket, together

@@ -1,7 +1,7 @@
 """Tests in namespaces of their own: networks and mounts that vanish with the test.
 
-Root may make them, and so may every user where the system lets him be root in a namespace. Many containers allow neither:
-the test is skipped there, with status 77, ctest's SKIP_RETURN_CODE.
+Root may make them, and so may every user where the system lets him be root in a namespace. Many containers allow
+neither: the test is skipped there, with status 77, ctest's SKIP_RETURN_CODE.
 """
 import os
 import subprocess

@@ -1,6 +1,8 @@
-"""The environment in which tests start Open MPI: version 4 of Debian 12, or version 5 of Debian 13, which reads PRTE_MCA_….
+"""The environment in which tests start Open MPI: version 4 of Debian 12, or version 5 of Debian 13, which reads
+PRTE_MCA_….
 
-Jobs run as root, without a network, with more processes than processors, and without a processor of its own for each of them.
+Jobs run as root, without a network, with more processes than processors, and without a processor of its own for each of
+them.
 """
 
 OPEN_MPI = {

@@ -1,5 +1,5 @@
-"""Looking back: evod replay, OpenReplay, Seek and ForkWorld over real sockets. EVOD and EVOCTL name the programs, MESSAGES
-the folder of the message classes."""
+"""Looking back: evod replay, OpenReplay, Seek and ForkWorld over real sockets. EVOD and EVOCTL name the programs,
+MESSAGES the folder of the message classes."""
 import os
 import pathlib
 import re
@@ -27,7 +27,8 @@ class Server(plain.Server):
     def __init__(self, *words, launcher=(), **popen):
         """launcher: the words before the program, of another one that starts it."""
         self.log = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([*launcher, EVOD, *words, "--port", "0"], stdout=self.log, stderr=self.log, **popen)
+        self.process = subprocess.Popen([*launcher, EVOD, *words, "--port", "0"], stdout=self.log, stderr=self.log,
+                                        **popen)
         line = plain.until(lambda: self.process.poll() is not None or
                            re.search(r"listening on 127\.0\.0\.1:(\d+)", self.output()), "ready")
         if line is True:
@@ -107,7 +108,8 @@ class OpenReplay(Case):
         self.assertEqual(end.state_hash, self.hashes[120])
         self.assertEqual(to(generation=3, tick=10).state_hash, self.hashes[250])
         self.assertEqual(to().tick, 421)
-        for wrong, field, allowed in (({"generation": 5}, "generation", "1 to 4"), ({"generation": 0}, "generation", "1 to 4"),
+        for wrong, field, allowed in (({"generation": 5}, "generation", "1 to 4"),
+                                      ({"generation": 0}, "generation", "1 to 4"),
                                       ({"tick": 422}, "tick", "0 to 421"),
                                       ({"generation": 2, "tick": 121}, "tick", "0 to 120 in generation 2")):
             refused = viewer.call(c.CODE_NOT_FOUND, seek=c.Seek(world=past.name, to=at(**wrong)))
@@ -151,13 +153,16 @@ class OpenReplay(Case):
         self.assertEqual(len(viewer.call(get_history=c.GetHistory(world=past)).history.generations), 2)
         viewer.call(get_organism=c.GetOrganism(world=past, organism=3))
         reported = viewer.call(get_population=c.GetPopulation(world=past)).population
-        self.assertEqual((reported.generation, reported.generation_tick, len(reported.parents)), (2, 1, 8 * reported.organism_count))
+        self.assertEqual((reported.generation, reported.generation_tick, len(reported.parents)),
+                         (2, 1, 8 * reported.organism_count))
         viewer.call(seek=c.Seek(world=past, to=at(tick=421)))  # where the run is
-        for name, request in (("population", {"get_population": c.GetPopulation}), ("motion", {"get_motion": c.GetMotion})):
+        for name, request in (("population", {"get_population": c.GetPopulation}),
+                              ("motion", {"get_motion": c.GetMotion})):
             then, now = (getattr(viewer.call(**{key: kind(world=world) for key, kind in request.items()}), name)
                          for world in (past, "w"))
             if name == "population":
-                self.assertEqual(len(then.founders), 4 * now.organism_count, "families are reported apart in the past too")
+                self.assertEqual(len(then.founders), 4 * now.organism_count,
+                                 "families are reported apart in the past too")
             else:  # as high as it was when contacts were last looked for afresh
                 then.ClearField("cell_px")
                 now.ClearField("cell_px")
@@ -226,7 +231,8 @@ class Fork(Case):
 
     def test_a_fork_equals_its_origin_until_a_change(self):
         forked = self.live.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=2)).world
-        self.assertEqual((forked.name, forked.generation, forked.tick, forked.state), ("f", 2, 120, w.RUN_STATE_WAITING))
+        self.assertEqual((forked.name, forked.generation, forked.tick, forked.state),
+                         ("f", 2, 120, w.RUN_STATE_WAITING))
         self.assertEqual(forked.seed, 3)
         self.assertNotEqual(forked.run_id, self.live.world("w").run_id)
         self.lives_as_its_origin(self.live, "f", [121, 250])  # the origin's change at 250 is not the fork's
@@ -302,7 +308,8 @@ class Fork(Case):
 
     def test_refusals_name_what_is_wrong(self):
         refused = lambda code, **fields: self.live.call(code, fork_world=c.ForkWorld(**fields)).status
-        self.assertEqual(refused(c.CODE_INVALID_ARGUMENT, world="w", name="../f").violations[0].field, "fork_world.name")
+        self.assertEqual(refused(c.CODE_INVALID_ARGUMENT, world="w", name="../f").violations[0].field,
+                         "fork_world.name")
         self.assertEqual(refused(c.CODE_INVALID_ARGUMENT, world="w", name="f", at_generation=0).violations[0].field,
                          "fork_world.at_generation")
         self.assertEqual(refused(c.CODE_ALREADY_EXISTS, world="w", name="w", at_generation=2).violations[0].field,
@@ -391,7 +398,8 @@ class Replay(Case):
         self.assertIn("`evod fork`", done.stdout)
 
     def test_other_files_are_refused(self):
-        for path, words in ((f"{self.folder}/nothing.evod", "no such file"), (__file__, "not"), (self.folder, "folder")):
+        for path, words in ((f"{self.folder}/nothing.evod", "no such file"), (__file__, "not"),
+                            (self.folder, "folder")):
             done = waiting.run([EVOD, "replay", path], capture_output=True, text=True)
             self.assertEqual(done.returncode, 1)
             self.assertIn(words, done.stderr)

@@ -1,5 +1,5 @@
-"""Food, poison and organisms that are placed in a running world and removed from it, from evoctl to the run file. EVOD and
-EVOCTL name the programs, MESSAGES the folder of the message classes."""
+"""Food, poison and organisms that are placed in a running world and removed from it, from evoctl to the run file. EVOD
+and EVOCTL name the programs, MESSAGES the folder of the message classes."""
 import json
 import pathlib
 import sys

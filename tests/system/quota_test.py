@@ -1,8 +1,8 @@
 """No user can take what belongs to all. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes.
 
 Each test is one pool that all clients share. Eve, a viewer, takes all of it that she gets, and keeps it
-(greedy_user.py). Meanwhile Ada, a controller, does one of everything: each request of hers is answered right, at the first
-attempt. How long each takes is measured by tests/bench/quota_cost.py.
+(greedy_user.py). Meanwhile Ada, a controller, does one of everything: each request of hers is answered right, at the
+first attempt. How long each takes is measured by tests/bench/quota_cost.py.
 """
 import contextlib
 import http.client
@@ -26,7 +26,8 @@ GREEDY_USER = str(pathlib.Path(__file__).with_name("greedy_user.py"))
 SESSIONS_MAX, FAR_TICK = 64, 100_000
 MEMORY_BYTES = plain.limit("client_buffer_bytes_max") + (128 << 20)  # docs/OPERATIONS.md
 POOLS = {  # what each attack of greedy_user.py takes, and the address of Ada, who otherwise shares that of Eve
-    "sessions": "127.0.0.1", "strangers": "127.0.0.2", "http": "127.0.0.2", "replays": "127.0.0.1", "seeks": "127.0.0.1",
+    "sessions": "127.0.0.1", "strangers": "127.0.0.2", "http": "127.0.0.2", "replays": "127.0.0.1",
+         "seeks": "127.0.0.1",
     "exports": "127.0.0.1", "simulated_exports": "127.0.0.1", "breeding": "127.0.0.1", "queries": "127.0.0.1",
     "mailbox": "127.0.0.1", "frames": "127.0.0.1", "answers": "127.0.0.1", "memory": "127.0.0.1", "events": "127.0.0.1"}
 
@@ -58,7 +59,8 @@ class Ground:
         self.folder = self.temporary.name
         self.secrets = {name: waiting.run([EVOD, "token", "add", name, "--role", role, "--data", self.folder],
                                           capture_output=True, text=True, check=True).stdout.strip()
-                        for name, role in (("root", "admin"), ("ada", "controller"), ("eve", "viewer"), ("bob", "viewer"))}
+                        for name, role in (("root", "admin"), ("ada", "controller"), ("eve", "viewer"),
+                                           ("bob", "viewer"))}
         self.serve(self.simulate, "--keep-every", "1000")
         self.serve(self.store_answers)
 
@@ -99,7 +101,8 @@ BREEDING = c.GetBreeding(world="w", generation=2)
 
 def export(client):
     """The table of generations of the world w."""
-    part = client.call(export_run=c.ExportRun(world="w", table=c.RUN_TABLE_GENERATIONS, format=c.TEXT_FORMAT_CSV)).export_part
+    part = client.call(export_run=c.ExportRun(world="w", table=c.RUN_TABLE_GENERATIONS,
+                                              format=c.TEXT_FORMAT_CSV)).export_part
     text = part.text
     while not part.last:
         part = client.call(continue_export=c.ContinueExport(export_id=part.export_id)).export_part

@@ -1,5 +1,5 @@
-"""Fitness from clients without the Python package: evoctl, a plain client, a kill, and the commands that need no network. EVOD
-and EVOCTL name the programs, MESSAGES the folder of the message classes."""
+"""Fitness from clients without the Python package: evoctl, a plain client, a kill, and the commands that need no
+network. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes."""
 import json
 import pathlib
 import sys
@@ -45,16 +45,20 @@ class Rating(access.Access):
         numbers = self.file("numbers.txt", "1\n-2.5\n3e3\r\n0\n")
         self.assertIn("waits for fitness", self.evoctl("status", server=server))
         self.assertIn("1 of 2 islands rated", self.evoctl("rate", numbers, "--generation", "1", server=server))
-        for wrong, got in ((self.file("word.txt", "1\nx\n"), "line 2: got x"), (self.file("five.txt", "1\n" * 5), "got 5"),
-                           (self.file("none.txt", ""), "got none"), (self.folder, "this is a folder"), ("/dev/zero", "this is a device"),
+        for wrong, got in ((self.file("word.txt", "1\nx\n"), "line 2: got x"),
+                           (self.file("five.txt", "1\n" * 5), "got 5"),
+                           (self.file("none.txt", ""), "got none"), (self.folder, "this is a folder"),
+                           ("/dev/zero", "this is a device"),
                            (self.file("large.txt", "1e101\n"), "allowed -1e100 to 1e100")):
             self.assertIn(got, self.evoctl("rate", wrong, "--island", "1", server=server, status=2))
-        self.assertIn("--generation: got 2, allowed 1", self.evoctl("rate", numbers, "--island", "1", "--generation", "2",
+        self.assertIn("--generation: got 2, allowed 1", self.evoctl("rate", numbers, "--island", "1", "--generation",
+                                                                    "2",
                                                                     server=server, status=1))
         part = self.evoctl("rate", self.file("two.txt", "1\n2\n"), "--island", "1", server=server)
         self.assertIn("the island has more organisms", part)
         self.evoctl("rate", numbers, "--island", "1", server=server)
-        last = plain.until(lambda: client.call(get_statistics=c.GetStatistics(world="rated")).statistics.last, "its end")
+        last = plain.until(lambda: client.call(get_statistics=c.GetStatistics(world="rated")).statistics.last,
+                           "its end")
         self.assertEqual([(s.fitness_best, s.best_organism) for s in last], [(3000, 2), (3000, 2)])
         self.waiting_world(client)
 
@@ -71,11 +75,13 @@ class Rating(access.Access):
                          (before.state_hash, plain.w.RUN_STATE_RUNNING, before.run_until_generation))
         self.assertEqual(list(world.awaited_fitness.islands), [0, 1])
         client.call(set_fitness=c.SetFitness(world="rated", generation=1, island=1, first_organism=2, fitness=[3, 4]))
-        client.call(INVALID, set_fitness=c.SetFitness(world="rated", generation=1, island=0, first_organism=1, fitness=[3]))
+        client.call(INVALID, set_fitness=c.SetFitness(world="rated", generation=1, island=0, first_organism=1,
+                                                      fitness=[3]))
         for generation in (1, 2):
             plain.until(lambda: client.world("rated").awaited_fitness.generation == generation, "the next generation")
             for island in client.world("rated").awaited_fitness.islands:
-                client.call(set_fitness=c.SetFitness(world="rated", generation=generation, island=island, fitness=[0, 1, 2, 3]))
+                client.call(set_fitness=c.SetFitness(world="rated", generation=generation, island=island,
+                                                     fitness=[0, 1, 2, 3]))
         self.assertEqual(client.world("rated").state, plain.w.RUN_STATE_WAITING)
         server.process.terminate()
         self.assertEqual(waiting.ended(server.process), 0)
@@ -84,7 +90,8 @@ class Rating(access.Access):
         self.assertEqual([json.loads(row)["fitness"] for row in rows][4:8], [1, 2, 3, 4])
 
     def test_commands_without_network_refuse_it_at_the_start(self):
-        sweep = self.file("sweep.json", json.dumps({"experiment": SETTING, "grid": {"elite_count": [0, 1]}, "generations": 2}))
+        sweep = self.file("sweep.json", json.dumps({"experiment": SETTING, "grid": {"elite_count": [0, 1]},
+                                                    "generations": 2}))
         for words, status in ((("run", self.experiment), 2), (("compare", self.experiment, "--controls"), 1),
                               (("sweep", sweep, "--out", f"{self.folder}/out"), 1)):
             self.assertIn("fitness: got external, allowed life, gene_sum or rastrigin", evod(*words, status=status))

@@ -3,16 +3,16 @@
     record_vectors.py EVOD MESSAGES [--check]
 
 EVOD is the program, MESSAGES the folder of the message classes: build/release/bin/evod build/release/tests/system. With
---check it writes nothing, and fails where the files differ from what the server sends now. docs/PROTOCOL.md, "Test vectors",
-describes the files.
+--check it writes nothing, and fails where the files differ from what the server sends now. docs/PROTOCOL.md, "Test
+vectors", describes the files.
 
-The script computes what a frame decodes to without a decoder of deltas or tiles. Beside each subscription another one with
-CODEC_PLAIN receives the same ticks; tiles, dots and densities are counted from its snapshots. Where a world is paused, the
-plain organisms are compared with the server's answers to GetOrganism, which involve no codec. At the end the decoder of
-docs/PROTOCOL.md must agree with everything.
+The script computes what a frame decodes to without a decoder of deltas or tiles. Beside each subscription another one
+with CODEC_PLAIN receives the same ticks; tiles, dots and densities are counted from its snapshots. Where a world is
+paused, the plain organisms are compared with the server's answers to GetOrganism, which involve no codec. At the end
+the decoder of docs/PROTOCOL.md must agree with everything.
 
-Each scenario starts a server, and is repeated until two recordings are equal byte for byte: on a busy machine the server may
-drop a snapshot, or send one more.
+Each scenario starts a server, and is repeated until two recordings are equal byte for byte: on a busy machine the
+server may drop a snapshot, or send one more.
 """
 import collections
 import json
@@ -113,7 +113,8 @@ class Recorder(plain.Client):
             organisms[organism] = steps
         born = self.call(get_population=c.GetPopulation(world=WORLD, island=snapshot.island)).population.organism_count
         for organism in range(born):
-            info = self.call(get_organism=c.GetOrganism(world=WORLD, island=snapshot.island, organism=organism)).organism
+            info = self.call(get_organism=c.GetOrganism(world=WORLD, island=snapshot.island,
+                                                        organism=organism)).organism
             steps = [math.floor(value * 16 + 0.5) for value in (info.x_px, info.y_px, info.radius_px, info.health)]
             if snapshot.plain.organisms.heading:
                 steps.append(heading_in_steps(info.heading))
@@ -140,7 +141,8 @@ class Recorder(plain.Client):
                      reset_world=c.ResetWorld(world=WORLD, seed=seed))
 
 
-# ---- scenarios --------------------------------------------------------------------------------------------------------
+# ---- scenarios
+# --------------------------------------------------------------------------------------------------------
 
 
 def region(left_px, top_px, width_px, height_px):
@@ -188,7 +190,8 @@ def empty(server):
     with Recorder(server, 1, fitness="gene_sum", population_size=4, food_count=0, poison_count=0) as recorder:
         whole(recorder, "empty")
         for detail in FULL, DOTS, DENSITY:
-            recorder.subscribe("empty_" + stream_pb2.Detail.Name(detail).lower(), codec=DELTA, view=c.View(detail=detail))
+            recorder.subscribe("empty_" + stream_pb2.Detail.Name(detail).lower(), codec=DELTA,
+                               view=c.View(detail=detail))
         recorder.run_to(1, 2)
         return recorder
 
@@ -302,7 +305,8 @@ def damage(server):
 
 
 def headings(server):
-    """Organisms with headings turn and die, and others are born; the last organism of a tile dies, so it has no headings."""
+    """Organisms with headings turn and die, and others are born; the last organism of a tile dies, so it has no
+    headings."""
     with Recorder(server, 41, headings=True, **{**TILED, "population_size": 6}, controller="network", brain_hidden=2,
                   damping=0.9, force_per_unit=10.0, health_loss_per_s=60.0) as recorder:
         recorder.cases["headings_plain"] = recorder.plain
@@ -317,7 +321,8 @@ def headings(server):
 SCENARIOS = [life, births, empty, islands, wide, crowd, tiles, details, coarse, corner, damage, headings]
 
 
-# ---- what frames decode to --------------------------------------------------------------------------------------------
+# ---- what frames decode to
+# --------------------------------------------------------------------------------------------
 
 
 def entities_of(snapshot):

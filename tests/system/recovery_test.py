@@ -133,8 +133,8 @@ def half_written(run):
 
 
 def kill_by_its_checkpoint(server, data, answered, after_s, parts, whole):
-    """Kills a server by its first checkpoint, once so many parts of it are there, or, if it is to be whole, once it is and
-    the server has answered again; or later, if that never comes."""
+    """Kills a server by its first checkpoint, once so many parts of it are there, or, if it is to be whole, once it is
+    and the server has answered again; or later, if that never comes."""
     def watch():
         time.sleep(after_s)
         # A checkpoint is due after two seconds of ticks, by the clock. Stopped within a tick for that long, it has one
@@ -283,15 +283,18 @@ class Recovery(unittest.TestCase):
         self.left_half = {}
         while half_written_count < wanted:
             lives += 1
-            self.assertLessEqual(lives, 5 * wanted + 10, f"only {half_written_count} kills came while a checkpoint was written")
+            self.assertLessEqual(lives, 5 * wanted + 10, f"only {half_written_count} kills came while a checkpoint was "
+                                                         "written")
             server = self.serve("--threads", str(1 + lives % 3))
             before = self.left_half
-            kill_by_its_checkpoint(server, self.data, answered, after_s=chance.uniform(0, 0.3), parts=chance.randint(1, 3),
+            kill_by_its_checkpoint(server, self.data, answered, after_s=chance.uniform(0, 0.3),
+                                   parts=chance.randint(1, 3),
                                    whole=lives % 2 == 1)
             self.ask_until_it_has_gone(server, chance, key, answered, self.look_at_what_is_left)
             half_written_count += any(tick not in before for tick in self.left_half)
             begun_with_one += self.left_checkpoint is not None
-        print(f"killed {lives} times: {half_written_count} while a checkpoint was written; {begun_with_one} times the next server"
+        print(f"killed {lives} times: {half_written_count} while a checkpoint was written; {begun_with_one} times the "
+              "next server"
               " began with one", flush=True)
         self.assertGreater(begun_with_one, 0)
         self.assert_as_if_never_stopped(answered, key, *options)
@@ -303,13 +306,16 @@ class Recovery(unittest.TestCase):
             with sqlite3.connect(f"{copy}/crowd.evod") as run:
                 self.left_half = half_written(run)
                 (self.left_checkpoint,) = run.execute("SELECT max(tick) FROM checkpoint").fetchone()
-                run.execute("UPDATE checkpoint SET state = zeroblob(length(state)) WHERE tick = ?", (self.left_checkpoint,))
+                run.execute("UPDATE checkpoint SET state = zeroblob(length(state)) WHERE tick = ?",
+                            (self.left_checkpoint,))
             run.close()
-            if self.left_checkpoint is not None:  # whether the next server begins with it: it would know that it is none
+            # whether the next server begins with it: it would know that it is none
+            if self.left_checkpoint is not None:
                 server = Server("--data", copy)
                 self.servers.append(server)
                 server.end()
-                self.assertIn(f'world "crowd" does not run: {copy}/crowd.evod is damaged: the row {self.left_checkpoint} of '
+                self.assertIn(f'world "crowd" does not run: {copy}/crowd.evod is damaged: the row '
+                              f'{self.left_checkpoint} of '
                               "its table checkpoint", server.output())
 
     def test_kills_during_recovery_lose_and_repeat_nothing(self):
@@ -360,7 +366,8 @@ class Recovery(unittest.TestCase):
         server = self.serve("--seed", "5", "--speed", "max")
         with Client(server, "k") as client:
             client.call(1, run=c.Run(generations=3))
-            until(lambda: client.world().generation == 3 and client.world().state == w.RUN_STATE_WAITING, "3 generations")
+            until(lambda: client.world().generation == 3 and client.world().state == w.RUN_STATE_WAITING,
+                  "3 generations")
             client.call(2, run_until_tick=c.RunUntilTick(tick=7777))
             until(lambda: client.world().tick == 7777, "tick 7777")
             client.call(3, create_world=c.CreateWorld(name="second", seed=2))
@@ -474,7 +481,8 @@ class Recovery(unittest.TestCase):
         for option in (["--start"], ["--speed", "2"]):
             refused = waiting.run([evod, "--port", "0", "--data", self.data, *option], capture_output=True, text=True)
             self.assertEqual(refused.returncode, 1)
-            self.assertIn(f"--speed and --start apply to one world, but {self.data} contains the worlds a, b: start without them",
+            self.assertIn(f"--speed and --start apply to one world, but {self.data} contains the worlds a, b: start "
+                          "without them",
                           refused.stderr)
         change(self.serve(), {"create_world": c.CreateWorld(name="default")})
         server = self.serve("--start")
@@ -532,7 +540,8 @@ class Recovery(unittest.TestCase):
             return [row[3] for row in journal(self.data) if row[2] == "k"]
         for byte in (18, head + 6, head + 9, *(head + i * frame + 2000 for i in range(0, frames, 3)), len(sound) - 100):
             begins = byte - (byte - head) % frame if byte >= head else 0
-            for words in (["verify", f"{self.data}/default.evod"], ["export", f"{self.data}/default.evod", "--what", "events"]):
+            for words in (["verify", f"{self.data}/default.evod"],
+                          ["export", f"{self.data}/default.evod", "--what", "events"]):
                 put_back(flipped(byte))
                 refused = waiting.run([evod, *words], capture_output=True, text=True)
                 self.assertEqual(refused.returncode, 1, (byte, words))

@@ -74,7 +74,8 @@ class ResourceLimits(unittest.TestCase):
             client.send(session_pb2.ClientMessage(request=c.Request(
                 request_id=4, client_key=client.key, run=c.Run(world="crowd"))))
             self.assertEqual(waiting.ended(server.process), OUT_OF_MEMORY, server.output())
-        self.assertRegex(server.output(), r"error.* out of memory.*: evod is shutting down; restart it to resume the runs")
+        self.assertRegex(server.output(), r"error.* out of memory.*: evod is shutting down; restart it to resume the "
+                                          r"runs")
         server = self.serve()
         with Client(server, "k") as client:
             self.assertEqual(client.call(1, **set_parameter("food_health", 7)).status.code, 0)
@@ -92,7 +93,8 @@ class ResourceLimits(unittest.TestCase):
             until(lambda: "commands are refused until the file can be written again" in server.output(), "trouble")
             self.assertEqual(client.call(2, **set_parameter("food_health", 7)).status.code, UNAVAILABLE)
             self.assertIn(client.world().storage.state, (w.STORAGE_STATE_FAILING, w.STORAGE_STATE_STALLED))
-            resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+            resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE,
+                             (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
             until(lambda: "run files can be written again" in server.output(), "the end of the trouble")
             self.assertEqual(client.call(2, **set_parameter("food_health", 7)).status.code, 0)
             self.assertEqual(client.call(3, pause=c.Pause()).status.code, 0)

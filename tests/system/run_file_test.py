@@ -113,7 +113,8 @@ class Documentation(Case):
         words = set(re.findall(r"\w+", self.text))
         for (table,) in self.run_file.execute("SELECT name FROM sqlite_schema WHERE type = 'table'").fetchall():
             self.assertIn(table, words)
-            if table in ("statistics", "inherited_statistics", "selection_account"):  # documented as the columns of the CSV
+            # documented as the columns of the CSV
+            if table in ("statistics", "inherited_statistics", "selection_account"):
                 continue
             for column in self.run_file.execute(f"SELECT name FROM pragma_table_info('{table}')").fetchall():
                 self.assertIn(column[0], words, table)
@@ -133,7 +134,8 @@ class Verify(Case):
             for threads in 1, 2, 7:
                 said = evod("verify", run, "--threads", threads)
                 self.assertIn("everything agrees: " + words, said)
-                self.assertRegex(said, r" state hashes, 0 checkpoints compared in \d+\.\d\d s, \d+(\.\d)? × real time\n$")
+                self.assertRegex(said, r" state hashes, 0 checkpoints compared in \d+\.\d\d s, \d+(\.\d)? × real "
+                                       r"time\n$")
 
     def test_a_run_agrees_while_it_is_written_and_after_a_kill(self):
         server = Server(self.folder, 4)
@@ -188,7 +190,8 @@ class Verify(Case):
                  "generation 2, tick 240: the state hash"),
                 ("population", "generation = 3 AND island = 0", "generation 3, tick 240", "the chromosomes: gene ",
                  "generation 2, tick 240: the end of the generation"),
-                ("population", "generation = 1 AND island = 0", "generation 1, tick 0", "the chromosomes: gene ", "none"),
+                ("population", "generation = 1 AND island = 0", "generation 1, tick 0", "the chromosomes: gene ",
+                 "none"),
                 ("statistics", "generation = 4 AND island = 0", "generation 4, tick 480",
                  "the statistics: fitness_best on island 0", "generation 4, tick 480: the state hash")):
             with self.subTest(table=table, where=where):
@@ -260,10 +263,12 @@ class Export(Case):
             fitness, lived, cause = database.execute(
                 "SELECT fitness, lived_ticks, cause FROM outcome WHERE generation = ? AND island = ?",
                 (generation, island)).fetchone() or (b"", b"", b"")
-            fitness, lived = struct.unpack(f"<{len(fitness) // 8}d", fitness), struct.unpack(f"<{len(lived) // 4}I", lived)
+            fitness, lived = struct.unpack(f"<{len(fitness) // 8}d", fitness), struct.unpack(f"<{len(lived) // 4}I",
+                                                                                             lived)
             for organism in range(count):
                 row = rows.pop(0)
-                self.assertEqual([int(row[x]) for x in ("generation", "island", "organism")], [generation, island, organism])
+                self.assertEqual([int(row[x]) for x in ("generation", "island", "organism")],
+                                 [generation, island, organism])
                 for gene, value in zip(GENES, genes[6 * organism:]):
                     self.assertEqual(struct.unpack("<f", struct.pack("<f", float(row[gene])))[0], value)
                     self.assertLessEqual(len(row[gene]), 10)
@@ -364,16 +369,19 @@ class Export(Case):
         rows = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
         self.assertEqual(list(rows[0]), ["island", "organism", *GENES])
         self.assertEqual([list(row.values()) for row in rows],
-                         [[row[x] for x in rows[0]] for row in self.rows(plain, "organisms") if row["generation"] == "3"])
+                         [[row[x] for x in rows[0]] for row in self.rows(plain, "organisms")
+                          if row["generation"] == "3"])
         with Server(self.folder, 8, "--population", path) as server:
             server.evoctl("until", "250", "--wait")
             server.evoctl("reset")
             server.evoctl("until", "130", "--wait")
         for run in pathlib.Path(self.folder).glob("*.evod"):
             self.assertIn("everything agrees", evod("verify", run))
-            self.assertEqual(evod("export", run, "--what", "population", "--generation", 1), pathlib.Path(path).read_text())
+            self.assertEqual(evod("export", run, "--what", "population", "--generation", 1),
+                             pathlib.Path(path).read_text())
             again = self.folder + "/again.csv"
-            evod("run", plain.with_suffix(".json"), "--seed", 8, "--population", path, "--generations", 1, "--csv", again)
+            evod("run", plain.with_suffix(".json"), "--seed", 8, "--population", path, "--generations", 1, "--csv",
+                 again)
             self.assertEqual(evod("export", run, "--what", "generations").splitlines()[:3],
                              pathlib.Path(again).read_text().splitlines())
         # Without --population the world continues; with another population the server refuses it.
@@ -391,7 +399,8 @@ class Export(Case):
         evod("export", plain, "--what", "population", "--output", path)  # of the last generation
         with Server(self.folder, 9) as server:
             server.evoctl("create", "same", "--experiment", self.folder + "/small.json", "--population", path)
-        self.assertEqual(evod("export", self.folder + "/same.evod", "--what", "population"), pathlib.Path(path).read_text())
+        self.assertEqual(evod("export", self.folder + "/same.evod", "--what", "population"),
+                         pathlib.Path(path).read_text())
 
     def bundle(self, run, *names):
         folder = pathlib.Path(self.folder) / "bundle"
@@ -469,7 +478,8 @@ class Export(Case):
     def test_errors_name_the_field(self):
         path = self.copy(plain)
         for arguments, words in {
-            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "population", "events"],
+            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "population",
+                                        "events"],
             (path, "--what", "events", "--format", "xml"): ["--format", "xml", "csv", "jsonl"],
             (path, "--what", "events", "--bundle", self.folder + "/b"): ["--what: not allowed with --bundle"],
         }.items():
@@ -479,8 +489,10 @@ class Export(Case):
         for arguments, words in {
             (path,): ["--what: got nothing", "--bundle FOLDER"],
             ("/nowhere.evod", "--what", "events"): ["/nowhere.evod: there is no such file"],
-            (path, "--what", "events", "--output", "/nowhere/events"): ["--output: cannot write /nowhere/events: No such"],
-            (path, "--what", "events", "--output", path): ["--output: got " + path, "a file other than the run file itself"],
+            (path, "--what", "events", "--output", "/nowhere/events"): ["--output: cannot write /nowhere/events: No "
+                                                                        "such"],
+            (path, "--what", "events", "--output", path): ["--output: got " + path,
+                                                           "a file other than the run file itself"],
             (path, "--what", "organisms", "--output", "/dev/full"): ["--output: cannot write /dev/full"],
         }.items():
             said = evod("export", *arguments, status=1)

@@ -98,7 +98,8 @@ class Run(unittest.TestCase):
         terminal.until("No display")
         os.write(terminal.end, CTRL_C)
         self.assertEqual(terminal.status(), 130, terminal.text)
-        self.assertEqual(re.findall(r"SIG\w+(?::| again:)[^\r]*", terminal.text), ["SIGTERM: shutting down"], terminal.text)
+        self.assertEqual(re.findall(r"SIG\w+(?::| again:)[^\r]*", terminal.text), ["SIGTERM: shutting down"],
+                         terminal.text)
 
     def test_a_second_interrupt_reaches_the_server(self):
         (self.bin / "evoctl").symlink_to(os.environ["EVOCTL"])

@@ -20,7 +20,8 @@ from open_mpi import OPEN_MPI
 
 EVOD, KILLS, MPIRUN = os.environ["EVOD"], int(os.environ.get("KILLS", 5)), os.environ.get("MPIRUN", "")
 # Four islands that exchange migrants, with a parameter that changes.
-RING = {"population_size": 40, "generation_s": 4, "food_count": 100, "island_count": 4, "migration": "ring", "migration_epoch": 2,
+RING = {"population_size": 40, "generation_s": 4, "food_count": 100, "island_count": 4, "migration": "ring",
+        "migration_epoch": 2,
         "mutation_chance": {"1": 0.3, "4": 0.05}, "generation_limit": 12, "seed": 7}
 
 
@@ -64,7 +65,8 @@ class Recorded(unittest.TestCase):
 
     def words(self, ranks=1, file=None):
         mpirun = [MPIRUN, "-n", str(ranks)] if ranks > 1 else []
-        return [*mpirun, EVOD, "run", str(self.ring), "--threads", "1", "--run-file", str(file or self.file), "--csv", str(self.csv)]
+        return [*mpirun, EVOD, "run", str(self.ring), "--threads", "1", "--run-file", str(file or self.file), "--csv",
+                str(self.csv)]
 
     def run_to_end(self, ranks=1):
         done = waiting.run(self.words(ranks), capture_output=True, text=True, env={**os.environ, **OPEN_MPI})
@@ -77,7 +79,8 @@ class Recorded(unittest.TestCase):
                                    env={**os.environ, **OPEN_MPI})
         with process.stdout:
             lines = []
-            while rows_first is not None and len(rows("".join(lines))) < rows_first and (line := process.stdout.readline()):
+            while rows_first is not None and len(rows("".join(lines))) < rows_first and (
+                line := process.stdout.readline()):
                 lines.append(line)
             time.sleep(after_s)  # the moment of the kill, not a wait
             below = list(waiting.descendants(process.pid))  # mpirun starts each rank in a group of its own
@@ -100,7 +103,8 @@ class Recorded(unittest.TestCase):
         self.assertEqual(re.search(r"everything agrees: (.*) compared", verified)[1],
                          re.search(r"everything agrees: (.*) compared", evod("verify", self.plain_file).stdout)[1])
         self.assertEqual(self.tables(self.file), self.tables(self.plain_file))
-        beside = {path.name for path in self.folder.iterdir()} - {"ring.evod-shm", "ring.evod-wal"}  # a reader leaves these
+        # a reader leaves these
+        beside = {path.name for path in self.folder.iterdir()} - {"ring.evod-shm", "ring.evod-wal"}
         self.assertEqual(beside, {"ring.csv", "ring.evod"})
 
 
@@ -144,10 +148,12 @@ class Run(Recorded):
         self.file.unlink()
         self.file.mkdir()
         self.assertIn(str(self.file), evod("run", self.ring, "--run-file", self.file, status=1).stderr)
-        self.assertIn("nowhere", evod("run", self.ring, "--run-file", self.folder / "nowhere" / "a.evod", status=1).stderr)
+        self.assertIn("nowhere", evod("run", self.ring, "--run-file", self.folder / "nowhere" / "a.evod",
+                                      status=1).stderr)
 
     def test_a_seed_that_was_drawn_is_kept(self):
-        words = ["run", "--set", "population_size=10", "--set", "generation_s=1", "--generations", "400", "--run-file", self.file]
+        words = ["run", "--set", "population_size=10", "--set", "generation_s=1", "--generations", "400", "--run-file",
+                 self.file]
         process = subprocess.Popen([EVOD, *map(str, words)], stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.stdout.close)
         seed = process.stdout.readline()
@@ -160,7 +166,8 @@ class Run(Recorded):
 
     def test_a_csv_file_has_its_name_when_it_is_complete(self):
         part = self.csv.with_name("ring.csv.part")
-        words = [EVOD, "run", "--seed", "1", "--set", "population_size=10", "--set", "generation_s=1", "--csv", str(self.csv)]
+        words = [EVOD, "run", "--seed", "1", "--set", "population_size=10", "--set", "generation_s=1", "--csv",
+                 str(self.csv)]
         for how, status in ((signal.SIGKILL, -signal.SIGKILL), (signal.SIGTERM, 130), (signal.SIGINT, 130)):
             self.csv.write_text("another run")
             with subprocess.Popen(words, stdout=subprocess.DEVNULL) as process:
@@ -183,7 +190,8 @@ class Run(Recorded):
                 for path in self.folder.iterdir():
                     path.unlink()
                 # At a random moment: before the first generation, within one, or while its results are written.
-                output = self.run_and_kill(rows_first=chance.choice([None, 0, 4, 16, 40]), after_s=chance.uniform(0, 0.05))
+                output = self.run_and_kill(rows_first=chance.choice([None, 0, 4, 16, 40]),
+                                           after_s=chance.uniform(0, 0.05))
                 printed = rows(output)
                 self.assertEqual(printed, rows(self.plain)[:len(printed)])
                 rest = self.run_to_end()

@@ -24,7 +24,8 @@ WORLDS = {
     "scarce": {"respawn": False, "food_count": 60, "poison_count": 10},
     "slow_to_grow": {"respawn_s": 3.5, "food_count": 40, "health_loss_per_s": 12.0},
     "steady_state": {"population_model": "steady_state", "selection": "tournament", "elite_count": 1},
-    "generational": {"population_model": "generational", "fitness_scaling": "linear_ranking", "crossover": "multi_point"},
+    "generational": {"population_model": "generational", "fitness_scaling": "linear_ranking",
+                     "crossover": "multi_point"},
     "integrated": {"integrator": "backward_euler", "tick_s": 0.01, "flee_rule": "always"},
     "crowd": {"population_size": 300, "scale_with_population": True, "reference_population": 50, "island_count": 2},
     "genes_alone": {"fitness": "rastrigin", "island_count": 3, "migration": "random"},
@@ -33,8 +34,8 @@ WORLDS = {
 
 class SaveAndLoad(past.Case):
     def story(self, chance):
-        """At which ticks the parameters of a world change, and at which it is forked: no change comes as long as a fork is
-        to be as the world is."""
+        """At which ticks the parameters of a world change, and at which it is forked: no change comes as long as a fork
+        is to be as the world is."""
         tick, changes, forks = 0, [], []
         for count in FORKS:
             tick += chance.randrange(700)
@@ -44,7 +45,8 @@ class SaveAndLoad(past.Case):
         return changes, forks
 
     def save(self, client, name, chance):
-        """Runs a world and saves it now and then. Returns by name of the copy: its tick, its hash, and its later hash."""
+        """Runs a world and saves it now and then. Returns by name of the copy: its tick, its hash, and its later
+        hash."""
         sizes = {"population_size": chance.randrange(5, 60), "generation_s": chance.choice([0.5, 2.0, 9.0, 40.0])}
         client.call(create_world=c.CreateWorld(name=name, seed=chance.randrange(1 << 32),
                                                parameters=plain.assignments(**{**sizes, **WORLDS[name]})))

@@ -36,7 +36,8 @@ class Schedules(access.Access):
         return str(path)
 
     def ended(self, client, world, generations):
-        return plain.until(lambda: (lambda w: w.generation == generations and w.state == plain.w.RUN_STATE_WAITING and w)(
+        return plain.until(lambda: (lambda w: w.generation == generations and w.state == plain.w.RUN_STATE_WAITING
+                                    and w)(
             client.world(world)), f"{generations} generations")
 
     def parameters(self, client, world):
@@ -44,7 +45,8 @@ class Schedules(access.Access):
 
     def test_evod_run_equals_a_server_killed_in_between(self):
         alone = state_of(evod("run", self.file, "--generations", "7"))
-        self.assertNotEqual(alone, state_of(evod("run", self.file, "--generations", "7", "--set", "mutation_chance=0.5")))
+        self.assertNotEqual(alone, state_of(evod("run", self.file, "--generations", "7", "--set",
+                                                 "mutation_chance=0.5")))
         self.assertEqual(alone, state_of(evod("run", self.file, "--generations", "7", "--threads", "3")))
         server = self.serve("--experiment", self.file, "--speed", "max")
         client = self.come(server)
@@ -54,7 +56,8 @@ class Schedules(access.Access):
         client.call(subscribe_events=c.SubscribeEvents(world=world))
         client.call(run=c.Run(world=world, generations=3))
         changed = client.next_event("parameters_changed").parameters_changed
-        self.assertEqual((changed.by.kind, [x.name for x in changed.changed], changed.revision), (access.w.ACTOR_KIND_SCHEDULE, ["food_health"], 2))
+        self.assertEqual((changed.by.kind, [x.name for x in changed.changed], changed.revision),
+                         (access.w.ACTOR_KIND_SCHEDULE, ["food_health"], 2))
         self.ended(client, world, 3)
         server.process.kill()
         waiting.ended(server.process)
@@ -107,7 +110,8 @@ class Schedules(access.Access):
         client.call(set_speed=c.SetSpeed(world="w", speed=plain.w.Speed(max=True)))
         client.call(run=c.Run(world="w", generations=4))
         dropped = client.next_event("change_dropped").change_dropped
-        self.assertEqual((dropped.by.kind, sorted(dropped.name)), (access.w.ACTOR_KIND_SCHEDULE, ["impulse_min", "mutation_chance"]))
+        self.assertEqual((dropped.by.kind, sorted(dropped.name)),
+                         (access.w.ACTOR_KIND_SCHEDULE, ["impulse_min", "mutation_chance"]))
         self.assertEqual([x.field for x in dropped.violations], ["impulse_max"])
         self.ended(client, "w", 4)
         values = {x.name: x.value.real for x in self.parameters(client, "w").parameters}
@@ -187,7 +191,8 @@ class Planned(access.Access):
 
     def test_wrong_ticks_and_ids_are_named(self):
         client = self.come(self.serve("--seed", "3"))
-        for at, field, allowed in (({"at_tick": 0}, "at_tick", "at least 1"), ({"at_generation": 1}, "at_generation", "at least 2"),
+        for at, field, allowed in (({"at_tick": 0}, "at_tick", "at least 1"),
+                                   ({"at_generation": 1}, "at_generation", "at least 2"),
                                    ({"at_generation": 0}, "at_generation", "at least 2"),
                                    ({"at_generation": 2, "at_tick": 9}, "at_tick", "absent if at_generation is set")):
             status = self.plan(client, INVALID, **at).status
@@ -210,7 +215,8 @@ class Planned(access.Access):
         self.assertRegex(reported, r"^change 1, from .*\nchange 2, after tick 9: food_health=3 food_count=1, by .*\n$")
         self.assertIn("cancelled: change 1,", self.evoctl("cancel", "1", server=server))
         self.assertIn("no planned change has that id", self.evoctl("cancel", "1", server=server, status=1))
-        self.assertIn("at least 2", self.evoctl("set", "--at-generation", "1", "food_health=3", server=server, status=2))
+        self.assertIn("at least 2", self.evoctl("set", "--at-generation", "1", "food_health=3", server=server,
+                                                status=2))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Clients that come and go for a long time and worlds that are reset many times: the server does not grow.
 
-EVOD names the program, MESSAGES the folder of the message classes. SECONDS, which is 20 unless it is set, is for how long
-they come and go, and RESETS, 250, how often worlds are reset. Where SANITIZED is set there are fewer at a time, and the
-memory is not judged: a sanitizer keeps what has been freed.
+EVOD names the program, MESSAGES the folder of the message classes. SECONDS, which is 20 unless it is set, is for how
+long they come and go, and RESETS, 250, how often worlds are reset. Where SANITIZED is set there are fewer at a time,
+and the memory is not judged: a sanitizer keeps what has been freed.
 """
 import math
 import os

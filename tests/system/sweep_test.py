@@ -85,7 +85,8 @@ class Sweep(Folder):
         _, rows = rows_of(self.folder / "small/runs.csv")
         mine = [row for row in rows if (row["cell"], row["replicate"]) == ("3", "1")]
         alone = self.folder / "alone.csv"
-        evod("run", self.file(SMALL["experiment"], "experiment.json"), "--seed", mine[0]["seed"], "--generations", 4, "--set",
+        evod("run", self.file(SMALL["experiment"], "experiment.json"), "--seed", mine[0]["seed"], "--generations", 4,
+             "--set",
              "selection=tournament", "--set", "mutation_chance=0.5", "--csv", alone)
         _, expected = rows_of(alone)
         self.assertEqual(len(expected), 4)
@@ -153,7 +154,8 @@ class Interrupted(Folder):
 
     def killed_once(self, parts, out, sweep, how, *options):
         """Ends a sweep after `parts` runs, while others run; returns the number of finished runs."""
-        process = subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--jobs", "2", *options], stdout=subprocess.PIPE,
+        process = subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--jobs", "2", *options],
+                                   stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, text=True)
 
         def enough():
@@ -261,7 +263,8 @@ class Refused(Folder):
             '{"grid": {"mutation_chance": [0.1, 1.5]}, "generations": 3}':
                 "small.json: invalid sweep\n  grid.mutation_chance[1] (line 1): got 1.5, allowed 0 to 1",
             '{"list": [{}],\n"generation": 3}': "generation (line 2): unknown name; did you mean generations?",
-            '{"parameters": {"food_count": [1]}, "generations": 3}': "parameters (line 1): unknown name; did you mean grid?",
+            '{"parameters": {"food_count": [1]}, "generations": 3}': "parameters (line 1): unknown name; did you mean "
+                                                                     "grid?",
             '{"list": [{}], "experiment": "nowhere.json"}': "nowhere.json: cannot be read: No such file",
             '{"list": [{}]}': "generations: got nothing, allowed a criterion that ends a run",
             '{"list": [{}]': "small.json: not JSON: line 1",
@@ -298,7 +301,8 @@ class Refused(Folder):
         sweep = self.file(SMALL)
         for arguments in ((), (sweep, "--jobs", "0"), (sweep, "--jobs", "many"), (sweep, "--array-index", "-1"),
                           (sweep, "--array-index", "x"), (sweep, "--array-index"), (sweep, "--gather", "--run-files"),
-                          (sweep, "--gather", "--array-index", "0"), (sweep, "--dry-run", "--gather"), (sweep, "--seed", "1"),
+                          (sweep, "--gather", "--array-index", "0"), (sweep, "--dry-run", "--gather"),
+                          (sweep, "--seed", "1"),
                           (sweep, "--gather", "--jobs", "2"), (sweep, sweep)):
             with self.subTest(arguments):
                 evod("sweep", *arguments, status=2)

@@ -1,12 +1,15 @@
 """Waiting in tests: for a condition, for as long as there is progress.
 
-A machine that is busy with other work is slow, and may stand still for seconds. A test must not fail for that. So a wait
-has no fixed duration:
+A machine that is busy with other work is slow, and may stand still for seconds. A test must not fail for that. So a
+wait has no fixed duration:
 
-- A wait ends with an error after STALLED_S seconds without progress. Progress is processor time used by the programs that
+- A wait ends with an error after STALLED_S seconds without progress. Progress is processor time used by the programs
+that
   the test has started: every tick, byte and log line of theirs costs some.
-- Time in which the test itself did not run is not counted: between two looks at the condition at most LOOK_S seconds are.
-- A world at full speed uses processor time for ever, so a wait for a condition also ends after LONGEST_S counted seconds.
+- Time in which the test itself did not run is not counted: between two looks at the condition at most LOOK_S seconds
+are.
+- A world at full speed uses processor time for ever, so a wait for a condition also ends after LONGEST_S counted
+seconds.
   A wait for the end of a program does not. ctest's TIMEOUT bounds everything.
 
 Some tests have to be quicker than a time limit of the server, such as a lease. `quicker_than` repeats them where the
@@ -145,9 +148,9 @@ class Laps:
 def quicker_than(limit_s, attempt):
     """The result of attempt(lap), which has to be quicker than a time limit of the server.
 
-    An attempt that fails after it has taken longer than that proves nothing, and is repeated. A quicker one that fails is
-    a failure, and so is the last of ATTEMPTS_MAX. The time between two calls of lap() counts, from the beginning to the
-    end, so an attempt may last as long as it likes if it calls lap() often enough.
+    An attempt that fails after it has taken longer than that proves nothing, and is repeated. A quicker one that fails
+    is a failure, and so is the last of ATTEMPTS_MAX. The time between two calls of lap() counts, from the beginning to
+    the end, so an attempt may last as long as it likes if it calls lap() often enough.
     """
     for number in range(1, ATTEMPTS_MAX + 1):
         laps = Laps()
@@ -157,5 +160,6 @@ def quicker_than(limit_s, attempt):
             laps.lap()
             if laps.longest_s < limit_s or number == ATTEMPTS_MAX:
                 raise
-            print(f"attempt {number} took {laps.longest_s:.1f} s, longer than {limit_s:g} s, and is repeated: {fault!r}",
+            print(f"attempt {number} took {laps.longest_s:.1f} s, longer than {limit_s:g} s, and is repeated: "
+                  f"{fault!r}",
                   file=sys.stderr, flush=True)

@@ -29,7 +29,8 @@ def frame(payload=b"", opcode=BINARY, final=True, mask=None, length=None, reserv
 
 def handshake(port, key="AQIDBAUGBwgJCgsMDQ4PEA==", **fields):
     """The request that opens a session. fields: replace header fields, None omits one; "_" stands for "-"."""
-    header = {"Host": f"127.0.0.1:{port}", "Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13",
+    header = {"Host": f"127.0.0.1:{port}", "Upgrade": "websocket", "Connection": "Upgrade",
+              "Sec-WebSocket-Version": "13",
               "Sec-WebSocket-Key": key, "Origin": f"http://127.0.0.1:{port}",
               **{name.replace("_", "-"): value for name, value in fields.items()}}
     return ("GET /session HTTP/1.1\r\n" +

@@ -33,7 +33,8 @@ PAGES = ("/", "/page.js", "/worker.js", "/app.css")
 
 
 def hello_frame(**fields):
-    body = plain.session_pb2.ClientMessage(hello=plain.session_pb2.Hello(protocol_version=1, **fields)).SerializeToString()
+    body = plain.session_pb2.ClientMessage(hello=plain.session_pb2.Hello(protocol_version=1,
+                                                                         **fields)).SerializeToString()
     return protocol_frame(body)
 
 
@@ -145,7 +146,8 @@ class Sessions(Case):
         for payload in (b"", b"x", bytes(125)):
             client.socket.send_raw(frame(payload, ws.PING))
             client.call(list_worlds=c.ListWorlds())
-            plain.until(lambda: (ws.PONG, payload) in client.socket.controls or client.call(list_worlds=c.ListWorlds()) is None,
+            plain.until(lambda: (ws.PONG, payload) in client.socket.controls
+                        or client.call(list_worlds=c.ListWorlds()) is None,
                         "a pong")
 
     def test_a_close_frame_is_answered(self):
@@ -173,9 +175,11 @@ class Sessions(Case):
 
     def test_invalid_frames_are_refused(self):
         for data in (frame(b"x", mask=b""), frame(b"x", reserved=4), frame(b"x", opcode=3), frame(b"x", opcode=11),
-                     frame(b"x", ws.CONTINUATION), frame(b"E", final=False) + frame(b"V"), frame(b"x", ws.PING, final=False),
+                     frame(b"x", ws.CONTINUATION), frame(b"E", final=False) + frame(b"V"),
+                     frame(b"x", ws.PING, final=False),
                      frame(bytes(126), ws.PING), b"\x82\xfe\x00\x05" + bytes(9), b"\x82\xff" + b"\xff" * 8 + bytes(4),
-                     frame(b"x", ws.CLOSE), frame(struct.pack(">H", 1005), ws.CLOSE), frame(struct.pack(">H", 99), ws.CLOSE)):
+                     frame(b"x", ws.CLOSE), frame(struct.pack(">H", 1005), ws.CLOSE),
+                     frame(struct.pack(">H", 99), ws.CLOSE)):
             self.refused(self.served, data, PROTOCOL_ERROR, "WebSocket")
 
     def test_a_ping_does_not_cut_the_goodbye(self):
@@ -293,7 +297,8 @@ class Floods(Case):
 
     def test_frames_without_content_are_limited(self):
         for data in (frame(b"x" * 8, ws.PING) * 100, frame(b"", ws.PONG) * 100, frame() * 100,
-                     frame(b"", final=False) + frame(b"", ws.CONTINUATION, final=False) * 99 + frame(b"", ws.CONTINUATION)):
+                     frame(b"", final=False) + frame(b"", ws.CONTINUATION, final=False) * 99 + frame(b"",
+                                                                                                     ws.CONTINUATION)):
             self.flood(self.session(self.served), data)
 
     def test_some_pings_are_allowed(self):
@@ -364,7 +369,8 @@ class Origins(Case):
     def test_only_pages_of_this_server_open_sessions(self):
         server = self.serve()
         port = self.port(server)
-        for origin in (None, "null", "http://evil.example", f"https://127.0.0.1:{port}.evil.example", "http://127.0.0.1",
+        for origin in (None, "null", "http://evil.example", f"https://127.0.0.1:{port}.evil.example",
+                       "http://127.0.0.1",
                        f"http://localhost:{port}", f"http://127.0.0.1:{port}/", f"file://127.0.0.1:{port}"):
             status, text = self.answer(server, handshake(port, Origin=origin))
             self.assertEqual(status, 403, origin)
@@ -376,15 +382,18 @@ class Origins(Case):
         server = self.serve()
         port = self.port(server)
         for path in ("/", "/metrics", "/healthz", "/protocol.bin", "/session", "/nowhere"):
-            for host in ("evil.example", f"evil.example:{port}", "10.9.8.7", "localhost.evil.example", "[::2]", "localhost:x",
+            for host in ("evil.example", f"evil.example:{port}", "10.9.8.7", "localhost.evil.example", "[::2]",
+                         "localhost:x",
                          "127.0.0.1@evil.example", ""):
-                status, text = self.answer(server, f"GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+                status, text = self.answer(server,
+                                           f"GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
                 self.assertEqual(status, 403, host)
                 self.assertIn("--http-host NAME", text)
         for field in ("", "Host: localhost\r\nHost: localhost\r\n"):
             self.assertEqual(self.answer(server, f"GET / HTTP/1.1\r\n{field}\r\n".encode())[0], 400)
         for host in ("localhost", "localhost:1", "127.0.0.1", f"[::1]:{port}", "LocalHost.", socket.gethostname()):
-            status, _ = self.answer(server, f"GET /metrics HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
+            status, _ = self.answer(server,
+                                    f"GET /metrics HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
             self.assertEqual(status, 200, host)
 
     def test_an_incomplete_handshake_is_refused(self):
@@ -403,7 +412,8 @@ class Origins(Case):
         self.open(server, Connection="keep-alive, Upgrade", Upgrade="WebSocket")
 
     def test_a_host_option_adds_a_name_and_needs_tokens(self):
-        done = waiting.run([EVOD, "--data", self.folder, "--port", "0", "--http-port", "0", "--http-host", "lab.example"],
+        done = waiting.run([EVOD, "--data", self.folder, "--port", "0", "--http-port", "0", "--http-host",
+                            "lab.example"],
                            capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("evod token add", done.stderr)
@@ -443,7 +453,8 @@ class WithTokens(Case, access.Access):
 
     def test_tls_serves_https_and_wss(self):
         key, certificate = f"{self.folder}/key.pem", f"{self.folder}/certificate.pem"
-        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-keyout",
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes",
+                        "-keyout",
                         key, "-out", certificate, "-days", "2", "-subj", "/CN=localhost", "-addext",
                         "subjectAltName=DNS:localhost,IP:127.0.0.1"], check=True, capture_output=True)
         server = self.server("--keep-nothing", "--http-port", "0", "--tls-cert", certificate, "--tls-key", key)
@@ -489,7 +500,8 @@ class Pages(Case):
 
     def test_the_page_is_compressed_and_revalidated(self):
         server = self.serve()
-        for path in (*PAGES, "/protocol.bin") if self.head(server, "/", **{"Accept-Encoding": "gzip"}).status == 200 else (
+        for path in (*PAGES, "/protocol.bin") if self.head(server, "/",
+                                                           **{"Accept-Encoding": "gzip"}).status == 200 else (
                 "/protocol.bin",):  # evod was built without the page
             with contextlib.closing(self.http(server)) as connection:
                 connection.request("GET", path, headers={"Accept-Encoding": "br, gzip;q=0.5"})
@@ -535,9 +547,11 @@ class Pages(Case):
                    for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir()}
 
         def crowd(_):
-            with metrics.stopped(threads["simulation"]), contextlib.ExitStack() as stack:  # so that answers take SIMULATION_S
+            # so that answers take SIMULATION_S
+            with metrics.stopped(threads["simulation"]), contextlib.ExitStack() as stack:
                 for _ in range(2 * plain.limit("http_connections_max")):
-                    stack.enter_context(contextlib.closing(self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")))
+                    socket = self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
+                    stack.enter_context(contextlib.closing(socket))
                 self.answers_another_address(server)
         waiting.quicker_than(metrics.SIMULATION_S, crowd)
 

@@ -1,5 +1,5 @@
-"""Rules of style that a program can check: plain words, braces, whole comment blocks, short test names, header pages, sizes,
-names that Python defines twice or never uses, unit tests.
+"""Rules of style that a program can check: plain words, braces, whole comment blocks, short test names, header pages,
+sizes, names that Python defines twice or never uses, unit tests.
 
     tidy.py [ROOT]     prints every finding as PATH:LINE: what is wrong, and what to write instead
 
@@ -13,9 +13,26 @@ import sys
 
 TEST_NAME_CHARACTERS_MAX = 50
 SOURCE_LINES_MAX = 700
+FUNCTION_LINES_MAX = 100  # without the docstring
+COLUMNS_MAX = 120
 
-# Word → what to write instead. A word is found in comments, texts and documents, and as a part of a name: `told` is found in
-# `told_count` and in `ToldCount`.
+# ==== THE SWITCH FOR THE PAGE: True holds client/web/src/**/*.ts to the limits of files, functions and columns. ====
+TYPESCRIPT = False
+# ==== THE SWITCH FOR COMMENTS OF C++: True holds them to the limit of columns, as clang-format holds the code. ====
+CPP_COMMENTS = False
+
+# Files that exceed a limit → why.
+LARGER_FILES = {
+    "tests/system/viewer/panels_test.cpp": "to be cut by its panels",
+    "tests/system/web/page_test.py": "to be cut by its panels",
+    "tests/unit/runtime/simulation_loop_test.cpp": "to be cut by its subjects",
+}
+LARGER_FUNCTIONS = {
+    "tests/determinism/scenarios.cpp": "a table, which a function initialises at its first call",
+}
+
+# Word → what to write instead. A word is found in comments, texts and documents, and as a part of a name: `told` is
+# found in `told_count` and in `ToldCount`.
 BANNED = {
     "picture": "snapshot (streamed or in memory), frame (drawn on the screen), image or plot (a file)",
     "pictures": "snapshots, frames, images or plots",
@@ -41,16 +58,19 @@ BANNED = {
 # Names from the time before the glossary, which have an ordinary meaning as words: only as a whole name.
 BANNED_NAMES = {
     "Retries": "ReplyCache", "Pulse": "Heartbeat", "Buffers": "SendMemory", "Breedings": "BackgroundQueries",
-    "Rearranging": "OrderMutation", "Sight": "Perception or ViewOptions", "Scene": "QuantisedSnapshot or IslandRenderer",
+    "Rearranging": "OrderMutation", "Sight": "Perception or ViewOptions",
+                "Scene": "QuantisedSnapshot or IslandRenderer",
     "Chain": "DeltaStream", "Watch": "WorldFeed or StreamDemand", "Thinning": "Retention", "Inquiry": "Poll",
     "Readout": "StatusText",
 }
 CODE = (".cpp", ".h", ".c", ".proto", ".py")
-TEXT = (*CODE, ".ts", ".mjs", ".css", ".html", ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
+TEXT = (*CODE, ".ts", ".glsl", ".mjs", ".css", ".html", ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
 # The changelog names what was renamed, and this test names what is banned. The rest is not ours to write, or not text.
 WITHOUT_WORDS = re.compile(r"CHANGELOG\.md|LICENSE|tests/tidy/|tests/fuzz/corpus/|proto/vectors/|\.gitignore")
 
-TOKEN = re.compile(r"""(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<text>R"(?P<mark>\w*)\(.*?\)(?P=mark)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')
+TOKEN = re.compile(
+    r"""(?P<comment>//[^\n]*|/\*.*?\*/)
+                       |(?P<text>R"(?P<mark>\w*)\(.*?\)(?P=mark)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')
                        |(?P<word>[A-Za-z_]\w*)|(?P<other>\S)""", re.S | re.X)
 
 
@@ -128,23 +148,26 @@ def missing_braces(path, text):
 
 def torn_comments(path, text):
     """Comment blocks whose lines a formatter has joined."""
-    if path.suffix not in (".cpp", ".h"):
+    if not is_measured(path, text):
         return
     for number, line in enumerate(text.splitlines(), 1):
-        if re.match(r"\s*//+\s*[^\s/].*\s(Owner|Threads|Determinism|Source)\s{2,}\S", line):
-            yield path, number, "a comment block is torn: begin Owner, Threads, Determinism and Source on a line of their own"
+        if re.match(r"\s*(?://+|#)\s*[^\s/].*\s(Owner|Threads|Determinism|Source)\s{2,}\S", line):
+            yield path, number, "a comment block is torn: begin Owner, Threads, Determinism and Source on own lines"
 
 
 def long_test_names(path, text):
     """Names of tests that are too long to read in a list."""
     if not path.parts or path.parts[0] != "tests":
         return
-    found = (re.finditer(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST|RC_GTEST_PROP|RC_GTEST_FIXTURE_PROP)\(\s*\w+,\s*(\w+)", text, re.M)
-             if path.suffix == ".cpp" else re.finditer(r"^\s*(?:async )?def test_(\w+)", text, re.M) if path.suffix == ".py" else ())
+    found = (re.finditer(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST|RC_GTEST_PROP|RC_GTEST_FIXTURE_PROP)\(\s*\w+,\s*(\w+)",
+                         text, re.M)
+             if path.suffix == ".cpp" else re.finditer(r"^\s*(?:async )?def test_(\w+)", text, re.M)
+             if path.suffix == ".py" else ())
     for name in found:
         if len(name[1]) > TEST_NAME_CHARACTERS_MAX:
             yield (path, line_of(text, name.start()),
-                   f"the test's name has {len(name[1])} characters, allowed {TEST_NAME_CHARACTERS_MAX}: claim it in fewer words")
+                   f"the test's name has {len(name[1])} characters, allowed {TEST_NAME_CHARACTERS_MAX}: claim it in "
+                   "fewer words")
 
 
 def header_without_page(path, text):
@@ -156,11 +179,71 @@ def header_without_page(path, text):
         yield path, 1, "the header begins without its page: what it is, owner, threads, determinism, source"
 
 
+def is_measured(path, text):
+    """Whether the limits of size hold for a file. They do not hold for generated files."""
+    is_page = path.suffix == ".ts" and str(path).startswith("client/web/src/")
+    if path.suffix not in (".cpp", ".h", ".py") and not (is_page and TYPESCRIPT):
+        return False
+    return not re.search(r"^\W*(?:.*\. )?Generated by ", "\n".join(text.splitlines()[:5]), re.M)
+
+
 def large_source(path, text):
     """Sources that hold more than one subject."""
     lines = text.count("\n")
-    if path.suffix in (".cpp", ".h") and path.parts[0] in ("server", "client", "proto") and lines > SOURCE_LINES_MAX:
+    if is_measured(path, text) and lines > SOURCE_LINES_MAX and str(path) not in LARGER_FILES:
         yield path, 1, f"{lines} lines, allowed {SOURCE_LINES_MAX}: cut the source by its subjects"
+
+
+def python_functions(text):
+    """(name, first line, number of lines without the docstring) of every function."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            documented = node.body[0].end_lineno - node.body[0].lineno + 1 if ast.get_docstring(node) is not None else 0
+            yield node.name, node.lineno, node.end_lineno - node.lineno + 1 - documented
+
+
+def braced_functions(text):
+    """(name, first line, number of lines) of every function of C++ or TypeScript that is not within another one."""
+    tokens = list(tokens_of(text))
+    scopes = []  # for each open brace: (kind, name, first line); kinds are "function", "member" and "other"
+    begin = 0  # index of the first token of the current declaration
+    for i, (_, token, line) in enumerate(tokens):
+        if token == "{":
+            head = [word for _, word, _ in tokens[begin:i]]
+            opening = head.index("(") if "(" in head else 0
+            after = head[len(head) - head[::-1].index(")"):] if ")" in head else head
+            is_scope = {"namespace", "class", "struct", "enum"} & set(after)
+            is_function = opening > 0 and "=" not in head[:opening] and not is_scope
+            kind = "other"
+            if is_function and ":" in head[opening:] and after and re.fullmatch(r"\w+_", head[-1]):
+                kind = "member"  # `: member_{value}` of a constructor
+            elif is_function and not any(of == "function" for of, _, _ in scopes):
+                kind = "function"
+            scopes.append((kind, head[opening - 1] if is_function else "", tokens[begin][2] if begin < i else line))
+        elif token == "}" and scopes:
+            kind, name, first = scopes.pop()
+            if kind == "function":
+                yield name, first, line - first + 1
+        if token == ";" or token == "{" and scopes[-1][0] != "member" or token == "}" and kind != "member":
+            begin = i + 1
+
+
+def large_function(path, text):
+    """Functions that do more than one thing."""
+    if not is_measured(path, text) or str(path) in LARGER_FUNCTIONS:
+        return
+    for name, line, lines in python_functions(text) if path.suffix == ".py" else braced_functions(text):
+        if lines > FUNCTION_LINES_MAX:
+            yield path, line, f"`{name}` has {lines} lines, allowed {FUNCTION_LINES_MAX}: cut the function by its steps"
+
+
+def long_line(path, text):
+    """Lines that do not fit next to each other."""
+    if not is_measured(path, text) or path.suffix in (".cpp", ".h") and not CPP_COMMENTS:
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        if len(line) > COLUMNS_MAX:
+            yield path, number, f"{len(line)} columns, allowed {COLUMNS_MAX}: wrap the line"
 
 
 def bound_names(statement):
@@ -176,7 +259,8 @@ def bound_names(statement):
         for target in statement.targets:
             for node in ast.walk(target):
                 if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-                    reads_itself = any(isinstance(one, ast.Name) and one.id == node.id for one in ast.walk(statement.value))
+                    reads_itself = any(isinstance(one, ast.Name) and one.id == node.id
+                                       for one in ast.walk(statement.value))
                     yield node.id, reads_itself
     elif isinstance(statement, (ast.Import, ast.ImportFrom)):
         for imported in statement.names:
@@ -202,7 +286,8 @@ def python_names(path, text):
                 yield path, statement.lineno, f"`{name}` is never used: remove it"
 
 
-RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source, python_names)
+RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source,
+         large_function, long_line, python_names)
 
 # Sources without a unit test of their own, by folder → the tests that cover them. `*` is every source below the folder.
 UNIT_TESTED_ELSEWHERE = {
@@ -216,6 +301,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/base", "column"): "unit/physics and unit/simulation: the memory of all columns",
     ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/fork and replay/verify",
+    ("server/commands", "json_lines"): "unit/commands/run_test, sweep_test and compare_test: options of these commands",
     ("server/commands", "shared_worlds"): "system/mpi_test",
     ("server/commands", "limits parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
     ("server/simulation", "local_islands run_parameters"): "unit/simulation/world_test and scheduled_world_test",
@@ -231,9 +317,12 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker"):
         "unit/recording/storage_thread_test and recorder_test",
     ("server/replay", "columns table"): "unit/replay/run_tables_test",
-    ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents run_database "
-                        "schema table"): "unit/run_file/run_file_test, damage_test and checkpoint_test: parts of one file",
-    ("server/run_file", "run_file_lock"): "unit/experiments/run_recording_test and system/run_test: it excludes other programs",
+    ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents "
+                        "run_database "
+                        "schema table"): "unit/run_file/run_file_test, damage_test and checkpoint_test: parts of one "
+                                         "file",
+    ("server/run_file", "run_file_lock"): "unit/experiments/run_recording_test and system/run_test: it excludes other "
+                                          "programs",
     ("server/runtime", "demand"): "unit/network/streams_test",
     ("server/runtime", "mpi_exchange"): "system/mpi_test: it needs mpirun",
     ("server/runtime", "command_handler pace replies run_finder snapshot"):
@@ -263,7 +352,8 @@ def untested_sources(names, text_of):
         test = f"tests/unit/{name[:-4].split('/', 1)[1]}_test.cpp"
         if test in tests or f"{folder}/{stem}.h" in included:
             continue
-        found = {one for one in excepted if one == (folder, stem) or one[1] == "*" and f"{folder}/".startswith(one[0] + "/")}
+        found = {one for one in excepted if one == (folder, stem) or one[1] == "*"
+                 and f"{folder}/".startswith(one[0] + "/")}
         used |= found
         if not found:
             yield (pathlib.Path(name), 1,
@@ -277,8 +367,56 @@ def unbuilt_tests(names, text_of):
     """Tests in C++ that no CMakeLists.txt builds. Arguments as in untested_sources()."""
     built = "\n".join(text_of(name) for name in names if pathlib.Path(name).name == "CMakeLists.txt")
     for name in sorted(names):
-        if re.match(r"tests/.*_test\.cpp$", name) and not re.search(rf"\b{re.escape(pathlib.Path(name).name)}\b", built):
+        if re.match(r"tests/.*_test\.cpp$", name) and not re.search(rf"\b{re.escape(pathlib.Path(name).name)}\b",
+                                                                    built):
             yield pathlib.Path(name), 1, "no CMakeLists.txt builds this test: add it to the sources of a test program"
+
+
+SENTENCE_WORDS_MIN = 4
+# Folders to which the rule does not apply. core: the protocol is implemented once per language, and the tests compare the verdicts of
+# all decoders; history_csv is such a reader, too. viewer: panels that the page has, too, until evoview is the minimal viewer; then
+# remove this entry.
+VOICES_APART = ("client/web/src/core/", "client/core/history_csv", "client/viewer/")
+# Labels of states, axes, fields and empty plots: names of things rather than sentences.
+LABELS = {"waits for the disk", "gene units per generation", "generation of the parents", "no generation has ended yet"}
+SENTENCE_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|\#[^\n]*|(?P<quote>\"{3}|["'`])(?P<text>(?:\\.|(?!(?P=quote)).)*?)(?P=quote)""", re.S | re.X)
+
+
+def sentences_of(path, text):
+    """The sentences in the text literals of a source, as words in lower case → line. Literals in a row are one."""
+    if path.suffix == ".py":
+        text = re.sub(r'(?m)^\s*"{3}.*?"{3}', lambda found: "\n" * found.group().count("\n"), text, flags=re.S)  # docstrings
+        text = re.sub(r"(?m)^\s*#.*$", "", text)
+    sentences, literal, start, end = {}, "", 0, -1
+    for found in [*SENTENCE_TEXT.finditer(text), None]:
+        if found is not None and found["text"] is None:
+            continue
+        if found is None or text[end:found.start()].strip(" \t\n\\+fr"):
+            for part in re.split(r"\$?\{[^{}]*\}|%[-.\d]*[a-z]+|[:;,.!?()–…]+\s", literal + " "):
+                words = re.findall(r"[a-z_]+", part.lower())
+                if len(words) >= SENTENCE_WORDS_MIN:
+                    sentences.setdefault(" ".join(words), line_of(text, start))
+            literal = ""
+        if found is not None:
+            start = found.start() if not literal else start
+            literal += found["text"].replace("\\n", " ")
+            end = found.end()
+    return sentences
+
+
+def second_voices(names, text_of):
+    """Sentences that the browser page has in common with a program in C++ or Python: one of both has to send it, or both
+    read it from a file. Arguments as in untested_sources()."""
+    others = {}
+    for name in names:
+        if re.match(r"(server|client|proto)/.*\.(cpp|h|py)$", name) and not name.startswith(VOICES_APART):
+            for sentence, line in sentences_of(pathlib.Path(name), text_of(name)).items():
+                others.setdefault(sentence, f"{name}:{line}")
+    for name in names:
+        if re.match(r"client/web/src/.*\.ts$", name) and not name.startswith(VOICES_APART):
+            for sentence, line in sentences_of(pathlib.Path(name), text_of(name)).items():
+                if sentence in others.keys() - LABELS:
+                    yield pathlib.Path(name), line, f"'{sentence}' stands in {others[sentence]}, too: let one of both say it"
 
 
 def findings(root):
@@ -299,6 +437,7 @@ def findings(root):
             yield from rule(path, text)
     yield from untested_sources(names, lambda name: (root / name).read_text())
     yield from unbuilt_tests(names, lambda name: (root / name).read_text())
+    yield from second_voices(names, lambda name: (root / name).read_text())
 
 
 if __name__ == "__main__":

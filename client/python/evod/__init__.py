@@ -11,11 +11,13 @@
 `evod.local()` starts a private server, for scripts and notebooks. `evod.open_run("x.evod")` reads a run file without a
 server. `evod.aio` has the same classes for asyncio. `evod.v1` contains the messages of the protocol.
 
-`evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call. `evod.run_table()` is made for tasks
-of an executor.
+`evod.run()`, `evod.sweep()` and `evod.compare()` compute whole experiments in one call. `evod.run_table()` is made for
+tasks of an executor.
 
-evod.results, evod.lab, evod.experiments and evod.version are generated when the package is built (setup.py).
+evod.results, evod.version, and a synchronous module for every module of evod.aio that has one, such as evod.lab, are
+generated when the package is built (setup.py).
 """
+from evod.connection import LocalLab, connect, local
 from evod.errors import (
     Aborted,
     AlreadyExists,
@@ -40,7 +42,7 @@ from evod.errors import (
 from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, run_table, sweep
 from evod.generations import Generation, History, Life, Population
 from evod.genes import GENE_NAMES, ByGene, Genes
-from evod.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
+from evod.lab import Lab, Replay, World
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
 from evod.results import (
     AwaitedFitness,
@@ -76,19 +78,28 @@ from evod.results import (
 )
 from evod.run_file import RunFile, open_run
 from evod.snapshots import Box, Boxes, Item, Items, Organism, Organisms, Snapshot, Tile
+from evod.streams import Events, Run, Snapshots
 from evod.version import __version__
 
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
 
 __all__ = [
-    "Aborted", "Actor", "AlreadyExists", "AnswerExpired", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding", "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
-    "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference", "EntityIds", "Error",
-    "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics", "Generation",
-    "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Migrant", "MissingPackage",
-    "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo", "Organisms",
-    "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population", "ProgramFailed",
-    "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot", "Snapshots",
+    "Aborted", "Actor", "AlreadyExists", "AnswerExpired", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding",
+           "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
+    "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference",
+           "EntityIds", "Error",
+    "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics",
+           "Generation",
+    "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics",
+           "LocalLab", "Migrant", "MissingPackage",
+    "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo",
+           "Organisms",
+    "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population",
+           "ProgramFailed",
+    "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot",
+           "Snapshots",
     "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated", "Unavailable",
-    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local", "open_run",
+    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local",
+           "open_run",
     "run", "run_table", "sweep",
 ]  # fmt: skip

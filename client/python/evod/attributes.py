@@ -1,4 +1,5 @@
-"""The parameters of a World as attributes. Only the synchronous World has them, because an attribute cannot be awaited."""
+"""The parameters of a World as attributes. Only the synchronous World has them, because an attribute cannot be
+awaited."""
 from __future__ import annotations
 
 from typing import Any, Iterator, Mapping, Protocol
@@ -25,7 +26,8 @@ class _World(Protocol):
 
 
 class ParameterAttributes:
-    """The base class of World. It provides the property `parameters`, and the representation of a world in notebooks."""
+    """The base class of World. It provides the property `parameters`, and the representation of a world in
+    notebooks."""
 
     def _repr_html_(self: _World) -> str:
         try:
@@ -37,8 +39,8 @@ class ParameterAttributes:
     def parameters(self: _World) -> LiveParameters:
         """The current parameters as attributes. Assigning a value to an attribute sets the parameter on the server.
 
-        Every access sends a request to the server. Use `get_parameters` to read several parameters at the same moment, and
-        `set` to set several of them together.
+        Every access sends a request to the server. Use `get_parameters` to read several parameters at the same moment,
+        and `set` to set several of them together.
 
         Examples
         --------

@@ -39,7 +39,8 @@ _SPECIAL: Mapping[str, Callable[[Any], Any]] = {
 
 
 def result(message: google.protobuf.message.Message, gene_names: Sequence[str] = GENE_NAMES) -> Any:
-    """Converts a message of the protocol to the dataclass of the same name. `gene_names` are those of the message's world."""
+    """Converts a message of the protocol to the dataclass of the same name. `gene_names` are those of the message's
+    world."""
     make, fields = _converters(message.DESCRIPTOR)
     return make(*(convert(message, gene_names) for convert in fields))
 

@@ -1,10 +1,10 @@
 """The client side of the protocol, as a state machine without sockets, clocks and threads.
 
-The code that owns the socket calls opened(), received() and lost(), and sends the bytes that outgoing() returns. Callers
-pass requests and subscriptions to a Core, and find the answers, events and snapshots in Pending and Subscription. After a
-reconnect the core sends its Hello, subscribes again, and repeats every unanswered request with the same client_key and
-request_id. The repetition is idempotent, because the server has a reply cache: it applies each command once. Requests that
-contain an id of their session fail with it: those about subscriptions, exports and replays.
+The code that owns the socket calls opened(), received() and lost(), and sends the bytes that outgoing() returns.
+Callers pass requests and subscriptions to a Core, and find the answers, events and snapshots in Pending and
+Subscription. After a reconnect the core sends its Hello, subscribes again, and repeats every unanswered request with
+the same client_key and request_id. The repetition is idempotent, because the server has a reply cache: it applies each
+command once. Requests that contain an id of their session fail with it: those about subscriptions, exports and replays.
 
 Threads      none of its own. Only one thread at a time may call a Core.
 Bounds       Requests beyond the server's limit are queued here. A subscription keeps the newest EVENTS_KEPT events and
@@ -36,7 +36,8 @@ _KEYFRAME_REQUESTS_MAX = 3  # consecutive keyframe requests without a decoded sn
 _REPLAY_REQUESTS = frozenset(("open_replay", "seek", "get_breeding", "export_run", "continue_export"))
 _REPLAY_TIMEOUT_FACTOR = 20
 
-#: Requests that contain an id which is valid only in its session. They fail when the session ends, and are not repeated.
+#: Requests that contain an id which is valid only in its session. They fail when the session ends, and are not
+#: repeated.
 _SESSION_REQUESTS = frozenset(("unsubscribe", "request_keyframe", "set_view", "continue_export"))
 
 #: A Goodbye with one of these codes ends the client: another session would end for the same reason.
@@ -69,7 +70,8 @@ def _no_connection(error: Error) -> NoConnection:
 
 
 class Pending:
-    """A request and its result: `response` after the server has answered, or `error` if no answer can arrive any more."""
+    """A request and its result: `response` after the server has answered, or `error` if no answer can arrive any
+    more."""
 
     def __init__(self, request: commands_pb2.Request, frame: bytes) -> None:
         self.request, self.frame = request, frame
@@ -105,7 +107,8 @@ class Subscription:
         self._lost = 0  # number of events that this object dropped since the last EventsDropped
 
     def take_event(self) -> stream_pb2.Event | None:
-        """Removes and returns the oldest event, or first an EventsDropped if events were dropped; None if there is none."""
+        """Removes and returns the oldest event, or first an EventsDropped if events were dropped; None if there is
+        none."""
         if self._lost:
             lost, self._lost = self._lost, 0
             return stream_pb2.Event(events_dropped=stream_pb2.EventsDropped(dropped_count=lost))
@@ -155,7 +158,8 @@ class Core:
         self._last_request_id = 0
         self._pending: dict[int, Pending] = {}  # requests by request_id, in the order of the calls
         self._first: set[int] = set()  # ids of the requests to send before all other requests
-        self._in_flight: set[int] = set()  # ids of unanswered requests of this session, even if no caller waits for them
+        # ids of unanswered requests of this session, even if no caller waits for them
+        self._in_flight: set[int] = set()
         self._abandoned_replays: set[int] = set()  # ids of unanswered OpenReplay requests whose callers no longer wait
         self._own_replays: set[str] = set()  # names of the replays that this session has opened
         self._ended_replays: set[str] = set()  # names of the replays that earlier sessions have opened
@@ -173,7 +177,8 @@ class Core:
         self._send(self._hello)
 
     def received(self, data: bytes | bytearray | memoryview) -> None:
-        """Processes bytes from the server. If it raises NoConnection or DamagedData, close the connection and call lost()."""
+        """Processes bytes from the server. If it raises NoConnection or DamagedData, close the connection and call
+        lost()."""
         self._reader.feed(data)
         try:
             for channel, body in self._reader.frames():
@@ -229,14 +234,16 @@ class Core:
     def request(self, request: commands_pb2.Request, *, first: bool = False) -> Pending:
         """Queues a request, which is sent when there is a session. Sets its request_id and client_key.
 
-        Raises NoConnection if the client is closed or has failed, or if the request contains an id of a session and there is
-        none; NotFound if it names a replay of an earlier session; InvalidArgument if it is longer than the server allows.
+        Raises NoConnection if the client is closed or has failed, or if the request contains an id of a session and
+        there is none; NotFound if it names a replay of an earlier session; InvalidArgument if it is longer than the
+        server allows.
         """
         if self.failed is not None:
             raise _no_connection(self.failed)
         if (replay := _replay_in(request)) in self._ended_replays:
             raise _replay_has_ended(replay)
-        if self.loss is not None and self.welcome is not None and (replay or request.WhichOneof("kind") in _SESSION_REQUESTS):
+        if self.loss is not None and self.welcome is not None and (replay
+                                                                   or request.WhichOneof("kind") in _SESSION_REQUESTS):
             raise _no_connection(self.loss)
         request_id = self._last_request_id + 1
         request.request_id, request.client_key = request_id, self.client_key
@@ -298,8 +305,8 @@ class Core:
         """Sends queued requests, up to half of the server's limit on unanswered requests."""
         if not self.connected or self.welcome is None:
             return
-        # The server counts a request until it has sent the complete answer. The answer may arrive here before the server
-        # stops counting the request.
+        # The server counts a request until it has sent the complete answer. The answer may arrive here before the
+        # server stops counting the request.
         limit = max(1, (self.welcome.limits.requests_in_flight_max or 32) // 2)
         for urgent in (True, False) if self._first else (False,):
             for request_id, pending in self._pending.items():
@@ -338,7 +345,8 @@ class Core:
             raise DamagedData("the first message is not a Welcome")
         if message.welcome.protocol_version != PROTOCOL_VERSION:
             self.failed = NoConnection(
-                f"the server at {self._server} uses protocol version {message.welcome.protocol_version}, but this package uses "
+                f"the server at {self._server} uses protocol version {message.welcome.protocol_version}, but this "
+                "package uses "
                 f"{PROTOCOL_VERSION}: install the package of the server's version"
             )
             raise self.failed

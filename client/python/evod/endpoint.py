@@ -62,7 +62,8 @@ def _unusable(error: Exception, message: str) -> Error:
 
 
 def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> str:
-    """Returns `token`; by default the first word of the file; without a file the value of EVOD_TOKEN, or "" if it is unset.
+    """Returns `token`; by default the first word of the file; without a file the value of EVOD_TOKEN, or "" if it is
+    unset.
 
     Raises InvalidArgument if users other than the owner can read the file.
     """
@@ -87,11 +88,12 @@ def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> 
 
 
 def tls_context(
-    tls: bool, ca: str | os.PathLike[str] | None, cert: str | os.PathLike[str] | None, key: str | os.PathLike[str] | None
+    tls: bool, ca: str | os.PathLike[str] | None, cert: str | os.PathLike[str] | None,
+                key: str | os.PathLike[str] | None
 ) -> ssl.SSLContext | None:
     """Returns the TLS settings; None if TLS is not used. Each of `tls`, `ca` and `cert` turns TLS on.
 
-    ca         PEM file with trusted certificates. Without it, the file named by the environment variable EVOD_CA is used, or
+    ca         PEM file with trusted certificates. Without it, the file in the variable EVOD_CA is used, or
                else the certificates that the system trusts.
     cert, key  PEM files with the client certificate and its private key. One file may contain both.
     """

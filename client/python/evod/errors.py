@@ -1,15 +1,16 @@
-"""Exceptions. Every exception of this package derives from Error, and from the built-in exception that is closest to it.
+"""Exceptions. Every exception of this package derives from Error, and from the built-in exception that is closest to
+it.
 
     Error
     ├── InvalidArgument      ValueError             an argument is not allowed; `violations` lists every such argument
-    ├── NotFound             KeyError               there is no such world, island, organism, generation or planned change
+    ├── NotFound             KeyError               no such world, island, organism, generation or planned change
     ├── AlreadyExists        ValueError             a world with this name exists
     ├── PermissionDenied     PermissionError        the role of this client does not allow the call
     ├── ResourceExhausted    RuntimeError           a limit of the server is reached
     ├── FailedPrecondition   RuntimeError           the call is not possible in the current state
-    │   └── AnswerExpired    RuntimeError           the server no longer has the answer; the command may have been applied
+    │   └── AnswerExpired    RuntimeError           the server lost the answer; the command may have been applied
     ├── Aborted              RuntimeError           another client changed the state first
-    ├── Unimplemented        NotImplementedError    the server does not support the call: it may be older than this package
+    ├── Unimplemented        NotImplementedError    the server lacks the call: it may be older than this package
     ├── Unavailable          ConnectionError        the server is shutting down or cannot write to its disk
     ├── NoConnection         ConnectionError        no server answers, or the connection is closed
     │   └── Unauthenticated  PermissionError        the server requires a token, or does not know the given one
@@ -39,7 +40,8 @@ class Violation(NamedTuple):
 
 
 class Error(Exception):
-    """This package, the server or the program evod refused a call. If no subclass states otherwise, nothing was changed.
+    """This package, the server or the program evod refused a call. If no subclass states otherwise, nothing was
+    changed.
 
     Examples
     --------
@@ -54,7 +56,8 @@ class Error(Exception):
       survivors: got -1, allowed 0 to 1
     """
 
-    #: ``evod.v1.Code``: sent by the server, or the code that the server would have sent; None if no server was involved.
+    #: ``evod.v1.Code``: sent by the server, or the code that the server would have sent; None if no server was
+    #: involved.
     code: int | None
     #: ``evod.v1.Reason``: the documented reason for the code; 0 if the server gave none.
     reason: int = 0
@@ -62,6 +65,8 @@ class Error(Exception):
     message: str
     #: All arguments whose values are not allowed.
     violations: tuple[Violation, ...]
+    #: Values in the message, for programs, by the names that ``evod.v1.Argument`` lists: {"suggestion": "lesson"}.
+    arguments: dict[str, str]
 
     _code: ClassVar[int | None] = None  # the code of a subclass
 
@@ -69,6 +74,7 @@ class Error(Exception):
         # Messages contain texts of servers, programs and files. A traceback prints them to a terminal.
         self.message = "\n".join(map(printable, message.split("\n")))
         self.violations = tuple(Violation(*map(printable, violation)) for violation in violations)
+        self.arguments = {}
         self.code = self._code if code is None else code
         super().__init__(self.message)
 
@@ -83,10 +89,12 @@ class Error(Exception):
             return f"code {self.code}"
 
     def __str__(self) -> str:
+        if len(self.violations) == 1 and self.message.startswith(self.violations[0].field + ": "):
+            return self.message  # it says what is allowed
         return self.message + "".join(f"\n  {v.field}: got {v.got}, allowed {v.allowed}" for v in self.violations)
 
     def __reduce__(self) -> tuple[object, ...]:
-        return _restored, (type(self), self.message, self.violations, self.code, self.reason)
+        return _restored, (type(self), self.message, self.violations, self.code, self.reason, self.arguments)
 
 
 class InvalidArgument(Error, ValueError):
@@ -182,7 +190,8 @@ class ProgramFailed(Error, RuntimeError):
 
 _OF_CODE: dict[int | None, type[Error]] = {
     kind._code: kind
-    for kind in (InvalidArgument, NotFound, AlreadyExists, PermissionDenied, ResourceExhausted, FailedPrecondition, Aborted,
+    for kind in (InvalidArgument, NotFound, AlreadyExists, PermissionDenied, ResourceExhausted, FailedPrecondition,
+                 Aborted,
                  Unimplemented, Unavailable, Unauthenticated, DamagedData)
 }  # fmt: skip
 
@@ -202,8 +211,8 @@ _PATH = re.compile(rf"\bfirst_generation\b|\b({'|'.join(sorted(_KINDS))})\.[a-z_
 def argument_of(field: str) -> str:
     """Returns the name of the argument of a function for the path of a field in a request.
 
-    >>> argument_of("set_parameters.mutation_chance"), argument_of("open_replay.at.generation"), argument_of("survivors")
-    ('mutation_chance', 'generation', 'survivors')
+    >>> argument_of("set_parameters.mutation_chance"), argument_of("open_replay.at.generation")
+    ('mutation_chance', 'generation')
     """
     if field in _ARGUMENTS:
         return _ARGUMENTS[field]
@@ -220,24 +229,28 @@ def _with_arguments(text: str) -> str:
 
 def printable(text: str) -> str:
     """Returns the text of a peer with '?' for characters that control a terminal or change the direction of text."""
-    return "".join("?" if unicodedata.category(character) in ("Cc", "Cf", "Zl", "Zp", "Cs") else character for character in text)
+    return "".join("?" if unicodedata.category(character) in ("Cc", "Cf", "Zl", "Zp", "Cs") else character
+                   for character in text)
 
 
 def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
     violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
-    message = _with_arguments(printable(status.message))
+    # The lines after the sentence are those that str() makes of the violations.
+    message = _with_arguments(printable(status.message.partition("\n")[0]))
     kind: type[Error] = _OF_CODE.get(status.code, Error)
     if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD:
         kind = AnswerExpired
     error = kind(message, violations, status.code)
     error.reason = status.reason
+    error.arguments = {printable(argument.name): printable(argument.value) for argument in status.arguments}
     return error
 
 
 def damaged_world(event: stream_pb2.Event) -> Error:
     """Returns the error for a world that has stopped: the server's answer to every request that names the world."""
-    return refusal(commands_pb2.Status(code=commands_pb2.CODE_FAILED_PRECONDITION, reason=commands_pb2.REASON_WORLD_DAMAGED,
+    return refusal(commands_pb2.Status(code=commands_pb2.CODE_FAILED_PRECONDITION,
+                                       reason=commands_pb2.REASON_WORLD_DAMAGED,
                                        message="the world does not run: " + event.world_damaged.reason))
 
 
@@ -247,15 +260,18 @@ def copy_of(error: E) -> E:
     Every caller raises its own copy. The traceback of the original refers to the stack frames of the connection task. A
     caller that clears the frames of a traceback, as unittest does, would end this task.
     """
-    return _restored(type(error), error.message, error.violations, error.code, error.reason)
+    return _restored(type(error), error.message, error.violations, error.code, error.reason, error.arguments)
 
 
-def _restored(kind: type[E], message: str, violations: Iterable[Violation], code: int | None, reason: int) -> E:
+def _restored(kind: type[E], message: str, violations: Iterable[Violation], code: int | None, reason: int,
+              arguments: dict[str, str]) -> E:
     error = kind(message, violations, code)
     error.reason = reason
+    error.arguments = dict(arguments)
     return error
 
 
-def wrong_argument(field: str, allowed: str, got: object, message: str = "an argument is not allowed") -> InvalidArgument:
+def wrong_argument(field: str, allowed: str, got: object,
+                   message: str = "an argument is not allowed") -> InvalidArgument:
     """Returns the error for one invalid argument."""
     return InvalidArgument(message, [Violation(field, allowed, str(got))])

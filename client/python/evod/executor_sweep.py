@@ -1,9 +1,9 @@
 """Executes the runs of a sweep with an executor of concurrent.futures, or of a package with the same interface.
 
-Each run is a task. A worker, which may be on another machine, executes `evod sweep --run` and returns the file with its rows.
-This process writes it into the folder of the sweep, and `evod sweep --gather` makes the table. The folder is then as if
-`evod sweep` had executed the runs, and both can resume it. The program evod alone decides which cells and seeds a sweep has,
-which runs are missing, and what their files contain.
+Each run is a task. A worker, which may be on another machine, executes `evod sweep --run` and returns the file with its
+rows. This process writes it into the folder of the sweep, and `evod sweep --gather` makes the table. The folder is then
+as if `evod sweep` had executed the runs, and both can resume it. The program evod alone decides which cells and seeds a
+sweep has, which runs are missing, and what their files contain.
 
 Threads      ExecutorSweep.run() waits for the tasks; any thread may call stop().
 Determinism  a part depends only on its run, not on the executor and not on the order in which runs end.
@@ -27,7 +27,8 @@ from evod.experiment import write_json
 from evod.program import Program, find_program, result_in
 
 _STOP_TIMEOUT_S = 10  # after this time, runs that do not end continue without this process
-_LOOK_S = 0.2  # how often a worker checks whether the sweep has been stopped, and the sweep whether it has been interrupted
+# how often a worker checks whether the sweep has been stopped, and the sweep whether it has been interrupted
+_LOOK_S = 0.2
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,7 +54,8 @@ def plan_command(program: str | os.PathLike[str] | None, path: str) -> Program:
     return Program([find_program(program), "sweep", path, "--dry-run", "--json"], hidden=f"{path}: ")
 
 
-# ---- in a worker ------------------------------------------------------------------------------------------------------
+# ---- in a worker
+# ------------------------------------------------------------------------------------------------------
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,7 +87,8 @@ def execute(run: SweepRun) -> bytes:
         build = _build_of(program, path)
         if build != run.build:
             raise ProgramFailed(
-                f"{program} on {platform.node()} is another build of evod ({build}) than that of the sweep ({run.build}): "
+                f"{program} on {platform.node()} is another build of evod ({build}) than that of the sweep "
+                f"({run.build}): "
                 "install the same build on all machines"
             )
         part = os.path.join(folder, "part.csv")
@@ -124,7 +127,8 @@ def _stopped_with_the_sweep(running: str, process: Program) -> Iterator[None]:
         watcher.join()
 
 
-# ---- in the process of the caller -------------------------------------------------------------------------------------
+# ---- in the process of the caller
+# -------------------------------------------------------------------------------------
 
 
 class ExecutorSweep:
@@ -150,8 +154,8 @@ class ExecutorSweep:
         self._over = threading.Event()
 
     def run(self) -> str:
-        """Executes the missing runs and writes runs.csv. Raises the error of the first run that fails, after it has cancelled
-        the others. Returns what `evod sweep --gather --json` prints."""
+        """Executes the missing runs and writes runs.csv. Raises the error of the first run that fails, after it has
+        cancelled the others. Returns what `evod sweep --gather --json` prints."""
         with self._lock:
             if self._stopped:
                 raise concurrent.futures.CancelledError
@@ -207,7 +211,8 @@ class ExecutorSweep:
     def _next_ended(self) -> concurrent.futures.Future[bytes] | None:
         """Waits for the end of a run and returns its future; returns None after stop().
 
-        A signal that arrives just before a wait does not interrupt it, so each wait is short: Ctrl-C then has its effect.
+        A signal that arrives just before a wait does not interrupt it, so each wait is short: Ctrl-C then has its
+        effect.
         """
         while True:
             with contextlib.suppress(queue.Empty):

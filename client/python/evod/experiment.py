@@ -14,7 +14,8 @@ Experiment = Union[str, "os.PathLike[str]", Mapping[str, object], None]
 
 
 def with_parameters(experiment: Experiment, parameters: Mapping[str, object]) -> str | dict[str, object]:
-    """Returns the experiment with other values for some parameters. A file without such values is returned as its path."""
+    """Returns the experiment with other values for some parameters. A file without such values is returned as its
+    path."""
     if experiment is not None and not isinstance(experiment, Mapping) and not parameters:
         return file_of(experiment)
     return {**values_of(experiment), **parameters}

@@ -26,8 +26,8 @@ def account_part(gene: GeneStatistics, part: str) -> float:
 class Generation:
     """The results of one generation over all islands.
 
-    `best`, `mean` and `worst` are the fitness of the best, the average and the worst organism of the generation. Means over
-    islands are weighted by their number of organisms.
+    `best`, `mean` and `worst` are the fitness of the best, the average and the worst organism of the generation. Means
+    over islands are weighted by their number of organisms.
 
     Examples
     --------
@@ -74,7 +74,8 @@ class Generation:
 
     @property
     def diversity(self) -> float:
-        """The genetic diversity, 0 to 1: a gene's standard deviation divided by its range, averaged over genes and islands."""
+        """The genetic diversity, 0 to 1: a gene's standard deviation divided by its range, averaged over genes and
+        islands."""
         return self._mean([island.diversity for island in self.islands])
 
     @property
@@ -87,8 +88,8 @@ class Generation:
     def selection(self) -> Genes:
         """The part of `change` that is due to selection, because some organisms had more descendants than others.
 
-        Shape (genes,), in the units of the genes: ``g.selection["body_size"]``. nan in the first generation, and in runs
-        of older versions, which did not record it. selection + transmission + migration = change (docs/MODEL.md).
+        Shape (genes,), in the units of the genes: ``g.selection["body_size"]``. nan in the first generation, and in
+        runs of older versions, which did not record it. selection + transmission + migration = change (docs/MODEL.md).
 
         Examples
         --------
@@ -114,7 +115,8 @@ class Generation:
 
     @property
     def change(self) -> Genes:
-        """The mean of each gene minus its mean in the previous generation; shape (genes,), nan in the first generation."""
+        """The mean of each gene minus its mean in the previous generation; shape (genes,), nan in the first
+        generation."""
         return self._mean_part("change")
 
     def _mean_part(self, name: str) -> Genes:
@@ -197,14 +199,16 @@ class History(list[Generation]):
 
     def _repr_html_(self) -> str:
         rows = (
-            (g.number, f"{g.best:.1f}", f"{g.mean:.1f}", f"{g.worst:.1f}", g.alive_count, g.organism_count) for g in self
+            (g.number, f"{g.best:.1f}", f"{g.mean:.1f}", f"{g.worst:.1f}", g.alive_count, g.organism_count)
+                for g in self
         )
         return html_table(("generation", "best", "mean", "worst", "alive", "organisms"), rows)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Life:
-    """What the organisms of a generation have achieved until now, as arrays of shape (count,). Without bodies, all are 0."""
+    """What the organisms of a generation have achieved until now, as arrays of shape (count,). Without bodies, all are
+    0."""
 
     generation: int
     island: int
@@ -225,7 +229,8 @@ class Population:
     generation_tick: int  #: ticks since the generation began
     genes: Genes  #: shape (count, genes): genes["body_size"] has the shape (count,)
     parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids of the parents; (0, 2) in the first generation
-    founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): number of the founder of the lineage; (0,) if unknown
+    #: shape (count,): number of the founder of the lineage; (0,) if unknown
+    founders: numpy.typing.NDArray[numpy.uint32]
     choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.Choice of the next tick; 0: none
     forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): force in the next tick, kg px/s²
     targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): position of the target, px
@@ -260,7 +265,8 @@ def population_of(parts: Sequence[commands_pb2.Population], island: int, gene_na
 
     def rows(field: str, kind: str, columns: int) -> Any:
         whole = [
-            numpy.frombuffer(getattr(part, field), kind).reshape(columns, -1).T for part in parts if getattr(part, field)
+            numpy.frombuffer(getattr(part, field), kind).reshape(columns, -1).T for part in parts
+                 if getattr(part, field)
         ]
         return numpy.concatenate(whole) if whole else numpy.zeros((0, columns), kind)
 

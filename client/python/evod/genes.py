@@ -36,7 +36,8 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
         made = numpy.asarray(values).view(cls)
         made.names = tuple(names)
         if made.shape[-1:] != (len(made.names),):
-            raise ValueError(f"values: got the shape {made.shape}, allowed (…, {len(made.names)}): one column for each name")
+            raise ValueError(f"values: got the shape {made.shape}, allowed (…, {len(made.names)}): one column for each "
+                             "name")
         return made
 
     def __array_finalize__(self, template: Any) -> None:

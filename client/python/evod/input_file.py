@@ -1,4 +1,5 @@
-"""Files that the caller names: read with a bound, and only regular files, because reading a pipe or a device may never end."""
+"""Files that the caller names: read with a bound, and only regular files, because reading a pipe or a device may never
+end."""
 from __future__ import annotations
 
 import errno

@@ -1,7 +1,7 @@
 """The synchronous connection: runs the asyncio connection on a separate thread and waits for its results.
 
-Threads      any number of threads may use one Link. Only the connection thread accesses the Core and the plans. This thread
-             ends on close(), when the Link is garbage collected, or when the program ends.
+Threads      any number of threads may use one Link. Only the connection thread accesses the Core and the plans. This
+             thread ends on close(), when the Link is garbage collected, or when the program ends.
 Processes    a forked process does not have the connection thread, so its calls raise NoConnection.
 """
 from __future__ import annotations
@@ -100,7 +100,8 @@ class Link:
 
 
 class _Call(Generic[T]):
-    """A coroutine that the connection thread runs for another thread. start() and cancel() run on the connection thread.
+    """A coroutine that the connection thread runs for another thread. start() and cancel() run on the connection
+    thread.
 
     The calling thread may be interrupted at any moment, even before it knows whether start() was scheduled.
     """

@@ -16,8 +16,8 @@ from evod.program import environment, failure, find_program
 
 _STOP_TIMEOUT_S = 30  # time for the server to write its runs; after this time it is killed
 _LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
-# A shell script that starts the server, and stops it when the standard input of the shell is closed. The kernel closes this
-# input when the Python program ends, even if it is killed.
+# A shell script that starts the server, and stops it when the standard input of the shell is closed. The kernel closes
+# this input when the Python program ends, even if it is killed.
 _SUPERVISOR = (
     '"$@" & evod=$!; exec >/dev/null 2>&1; read -r _; kill "$evod"; wait "$evod"; [ -z "$FOLDER" ] || rm -rf "$FOLDER"'
 )
@@ -31,7 +31,8 @@ def start(
     threads: int | None,
     program: str | os.PathLike[str] | None,
 ) -> Server:
-    """Starts a server with the options of evod.local() and waits until it accepts connections. Raises Error if it fails."""
+    """Starts a server with the options of evod.local() and waits until it accepts connections. Raises Error if it
+    fails."""
     command = [find_program(program), "--port", "0"]
     command += [] if seed is None else ["--seed", str(seed)]
     command += [] if threads is None else ["--threads", str(threads)]
@@ -46,8 +47,8 @@ def start(
             command += ["--experiment", file_of(experiment)]
         if data is not None:
             return Server([*command, "--data", os.fspath(data)], hidden=hidden)
-        # The data in a temporary folder need not survive a power failure. A new folder contains no worlds, so an option of
-        # the program can set the speed of the single world.
+        # The data in a temporary folder need not survive a power failure. A new folder contains no worlds, so an option
+        # of the program can set the speed of the single world.
         temporary = tempfile.mkdtemp(prefix="evod-runs-")
         command += ["--data", temporary, "--durability", "relaxed", "--speed", str(speed)]
         return Server(command, temporary, hidden)

@@ -1,4 +1,5 @@
-"""Links to the page of a server, at which a browser shows a moment of a world. client/core/page_link.h defines the same form."""
+"""Links to the page of a server, at which a browser shows a moment of a world. client/core/page_link.h defines the same
+form."""
 from __future__ import annotations
 
 import re

@@ -1,4 +1,5 @@
-"""Parameters: the descriptions in the registry, the values in a world, and the checks of values before they are sent."""
+"""Parameters: the descriptions in the registry, the values in a world, and the checks of values before they are
+sent."""
 from __future__ import annotations
 
 import dataclasses
@@ -52,7 +53,8 @@ class Description:
         return "true or false" if self.kind == "flag" else ", ".join(self.choices)
 
     def got(self, value: object) -> str:
-        """Formats a refused value for an error message: as the server does if its type is correct, otherwise as Python does."""
+        """Formats a refused value for an error message: as the server does if its type is correct, otherwise as Python
+        does."""
         kinds = {"real": (int, float, numpy.number), "count": (int, numpy.integer), "choice": (str,)}
         right_kind = isinstance(value, kinds.get(self.kind, ())) and not isinstance(value, (bool, numpy.bool_))
         return text_of(value) if right_kind else repr(value)
@@ -102,11 +104,13 @@ class Actor:
 
 @dataclasses.dataclass(frozen=True)
 class PlannedChange:
-    """A planned change of parameters. When it is due, the server checks it again and applies it completely or drops it."""
+    """A planned change of parameters. When it is due, the server checks it again and applies it completely or drops
+    it."""
 
     id: int  #: 0 for a dry run
     generation: int | None  #: the change is due at the first tick of this generation; None if `tick` is set
-    tick: int | None  #: the change is due after this tick, counted from the beginning of the run; None if `generation` is set
+    #: the change is due after this tick, counted from the beginning of the run; None if `generation` is set
+    tick: int | None
     values: Mapping[str, Value]  #: by parameter name
     by: Actor  #: the client that planned it
 
@@ -174,8 +178,8 @@ class Registry(Mapping[str, Description]):
     ) -> tuple[list[world_pb2.ParameterAssignment], list[world_pb2.ScheduledValue]]:
         """Converts a mapping of names to values, or to schedules of values by generation, into the messages to send.
 
-        Returns the values for generation 1 and the values for later generations. Raises one InvalidArgument that lists every value that
-        is not allowed.
+        Returns the values for generation 1 and the values for later generations. Raises one InvalidArgument that lists
+        every value that is not allowed.
         """
         first: dict[str, object] = {}
         later, violations = [], []
@@ -253,7 +257,8 @@ class Parameters(Mapping[str, Parameter]):
 
     @property
     def schedule(self) -> Mapping[int, Mapping[str, Value]]:
-        """The schedule of the experiment. It maps each later generation to the values that take effect at its first tick.
+        """The schedule of the experiment. It maps each later generation to the values that take effect at its first
+        tick.
 
         Only the result of get_parameters() contains the schedule.
         """
@@ -306,7 +311,8 @@ class Parameters(Mapping[str, Parameter]):
 
     def _repr_html_(self) -> str:
         return html_table(("name", "value", "pending", "allowed", "unit", "takes effect", "meaning"), (
-            (p.name, text_of(p.value), "" if p.pending is None else text_of(p.pending), p.allowed, p.unit, p.effect, p.help)
+            (p.name, text_of(p.value), "" if p.pending is None else text_of(p.pending), p.allowed, p.unit, p.effect,
+             p.help)
             for p in self.values()
         ))
 

@@ -1,4 +1,5 @@
-"""Plots of islands and runs. Every function draws into the given matplotlib axes, or into new axes, and returns the axes.
+"""Plots of islands and runs. Every function draws into the given matplotlib axes, or into new axes, and returns the
+axes.
 
 matplotlib is imported on first use, because the rest of the package works without it.
 """
@@ -31,7 +32,8 @@ def _axes(ax: Any, **options: Any) -> Any:
     return ax if ax is not None else pyplot().subplots(**options)[1]
 
 
-# ---- an island ----------------------------------------------------------------------------------------------------------
+# ---- an island
+# ----------------------------------------------------------------------------------------------------------
 
 
 class _Items(Protocol):
@@ -57,7 +59,8 @@ class _Boxes(_Items, Protocol):
 
 
 class Island(Protocol):
-    """The fields of Snapshot that are plotted. evod.snapshots imports this module, so this module cannot import Snapshot."""
+    """The fields of Snapshot that are plotted. evod.snapshots imports this module, so this module cannot import
+    Snapshot."""
 
     @property
     def world(self) -> str: ...
@@ -84,7 +87,8 @@ class Island(Protocol):
 
 
 class IslandPlot:
-    """A plot of an island, true to scale, which later snapshots can update. The colour of an organism shows its health."""
+    """A plot of an island, true to scale, which later snapshots can update. The colour of an organism shows its
+    health."""
 
     def __init__(self, snapshot: Island, ax: Any = None) -> None:
         width = 8.0
@@ -111,7 +115,8 @@ class IslandPlot:
         _place(self._organisms, organisms.x_px, organisms.y_px, organisms.radius_px)
         self._organisms.set_array(organisms.health)
         self.axes.set_title(
-            f"{snapshot.world}, generation {snapshot.generation}, {len(organisms)} alive, {snapshot.simulated_s:.0f} s", fontsize=10
+            f"{snapshot.world}, generation {snapshot.generation}, {len(organisms)} alive, {snapshot.simulated_s:.0f} s",
+                            fontsize=10
         )
 
 
@@ -146,7 +151,8 @@ def _discs(ax: Any, **options: Any) -> Any:
     from matplotlib.collections import EllipseCollection
 
     clim = options.pop("clim", None)
-    discs = EllipseCollection([], [], [], units="xy", offsets=numpy.zeros((0, 2)), offset_transform=ax.transData, **options)
+    discs = EllipseCollection([], [], [], units="xy", offsets=numpy.zeros((0, 2)), offset_transform=ax.transData,
+                              **options)
     if clim is not None:
         discs.set_clim(*clim)
     return ax.add_collection(discs)
@@ -164,7 +170,8 @@ def _boxes(ax: Any, color: str) -> Any:
     return ax.add_collection(PolyCollection([], facecolor=color))
 
 
-# ---- a run --------------------------------------------------------------------------------------------------------------
+# ---- a run
+# --------------------------------------------------------------------------------------------------------------
 
 
 def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
@@ -192,7 +199,8 @@ def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = 
     ax = _axes(ax)
     curves = {gene: _spread(columns, gene) for gene in gene_names}
     if len(curves) > GENES_PLOTTED_MAX:
-        changes = {gene: float(abs(mean[-1] - mean[0]) / (deviation[0] or 1)) for gene, (_, mean, deviation) in curves.items()}
+        changes = {gene: float(abs(mean[-1] - mean[0]) / (deviation[0] or 1)) for gene,
+                   (_, mean, deviation) in curves.items()}
         most_changed = sorted(curves, key=lambda gene: -changes[gene])[:GENES_PLOTTED_MAX]
         curves = {gene: curves[gene] for gene in most_changed}
     for gene, (generation, mean, deviation) in curves.items():
@@ -205,7 +213,8 @@ def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = 
 
 
 def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: str, ax: Any = None) -> Any:
-    """Plots how selection, transmission and migration changed the mean of a gene in each generation, and the total change."""
+    """Plots how selection, transmission and migration changed the mean of a gene in each generation, and the total
+    change."""
     if gene not in gene_names:
         raise InvalidArgument(f"gene: got {gene!r}, allowed {', '.join(gene_names)}")
     ax = _axes(ax)
@@ -224,12 +233,13 @@ def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: 
 
 
 def plot_lineage(lineage: Any, ax: Any = None) -> Any:
-    """Plots the family tree of the last generation in a table from RunFile.lineage(), with generations from top to bottom.
+    """Plots the family tree of the last generation in a table from RunFile.lineage(), with generations from top to
+    bottom.
 
-    Organisms without a descendant in the last generation are left out. Lines lead to first parents, which gave a child at
-    least half of its genes; these lines never cross. If the last generation in the table is a single organism, thin lines
-    lead to the second parents of its ancestors. Otherwise the axis begins shortly before the lines meet in one organism,
-    the common ancestor. Points are coloured by fitness; grey: not known yet.
+    Organisms without a descendant in the last generation are left out. Lines lead to first parents, which gave a child
+    at least half of its genes; these lines never cross. If the last generation in the table is a single organism, thin
+    lines lead to the second parents of its ancestors. Otherwise the axis begins shortly before the lines meet in one
+    organism, the common ancestor. Points are coloured by fitness; grey: not known yet.
     """
     ax = _axes(ax, figsize=(8, 6))
     import matplotlib
@@ -322,7 +332,8 @@ def _by_generation(columns: Mapping[str, Any], name: str, over: Any) -> tuple[Ar
 
 
 def _spread(columns: Mapping[str, Any], name: str) -> tuple[Array, Array, Array]:
-    """Returns arrays of generation numbers, means and standard deviations. They combine the organisms of all islands."""
+    """Returns arrays of generation numbers, means and standard deviations. They combine the organisms of all
+    islands."""
     count = numpy.asarray(columns["organism_count"], float)
     mean, deviation = (numpy.asarray(columns[f"{name}_{what}"], float) for what in ("mean", "deviation"))
     sums = {"count": count, "sum": count * mean, "square": count * (deviation**2 + mean**2)}

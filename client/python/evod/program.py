@@ -18,38 +18,43 @@ _UNKNOWN = re.compile(
 )
 _SEE_HELP = re.compile(r"^See evod( [a-z]+)? --help$")
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
-_OF_MPIRUN = ("OMPI_", "PMIX_", "PMI_")  # the first letters of the variables that mpirun and srun set for their processes
+# the first letters of the variables that mpirun and srun set for their processes
+_OF_MPIRUN = ("OMPI_", "PMIX_", "PMI_")
 
 
 def find_program(program: str | os.PathLike[str] | None) -> str:
-    """Returns the path of `program`; by default the path in the environment variable EVOD, or of the evod found in PATH."""
+    """Returns the path of `program`; by default the path in the environment variable EVOD, or of the evod found in
+    PATH."""
     name = os.fspath(program) if program is not None else os.environ.get("EVOD") or "evod"
     found = shutil.which(name)
     if found is None:
-        raise FileNotFound(f"the program {name} was not found: add its folder to PATH, or set the variable EVOD to its path")
+        raise FileNotFound(f"the program {name} was not found: add its folder to PATH, or set the variable EVOD to its "
+                           "path")
     return found
 
 
 def environment(**more: str) -> Mapping[str, str]:
     """Returns the environment for the program: that of this process, without the variables of mpirun, and `more`.
 
-    If mpirun has started this process, these variables would make the program a process of the same job: it would wait for
-    the others, which do not start it.
+    If mpirun has started this process, these variables would make the program a process of the same job: it would wait
+    for the others, which do not start it.
     """
     return {**{name: value for name, value in os.environ.items() if not name.startswith(_OF_MPIRUN)}, **more}
 
 
 def failure(output: str, hidden: str = "") -> Error:
-    """Returns the error for what the program printed before it ended. Options are named like the arguments of this package.
+    """Returns the error for what the program printed before it ended. Options are named like the arguments of this
+    package.
 
-    hidden  the path of a temporary file or folder, as it begins messages of the program; the result does not contain it.
+    hidden  the path of a temporary file or folder that begins messages of the program; the result lacks it.
     """
     violations, others = [], []
     for line in output.splitlines():
         if found := _REFUSED.match(line) or _REFUSED_OPTION.match(line):
             violations.append(Violation(_argument(found["field"]), found["allowed"], found["got"]))
         elif found := _UNKNOWN.match(line):
-            violations.append(Violation(_argument(found["field"]), found["meant"] or found["allowed"] or "a known name", "an unknown name"))
+            violations.append(Violation(_argument(found["field"]), found["meant"] or found["allowed"] or "a known name",
+                                        "an unknown name"))
         elif line.strip() and not _SEE_HELP.match(line):
             line = re.sub(r"^evod: ", "", line.strip())
             line = line.replace(hidden, "") if hidden else line
@@ -68,14 +73,15 @@ def result_in(printed: str) -> Any:
     try:
         return json.loads(printed.rstrip("\n").rpartition("\n")[2])
     except ValueError as error:
-        raise ProgramFailed("cannot read the output of evod: the program and the package must have the same version") from error
+        raise ProgramFailed(
+            "cannot read the output of evod: the program and the package must have the same version") from error
 
 
 class Program:
     """One execution of the program, with its output.
 
-    If this process is killed, the standard output of the program has no reader, and the next line that it prints ends it. So
-    `evod run` and `evod sweep --run --json` end soon after a generation.
+    If this process is killed, the standard output of the program has no reader, and the next line that it prints ends
+    it. So `evod run` and `evod sweep --run --json` end soon after a generation.
 
     hidden       as for `failure`.
     on_progress  called with the finished share of the work, 0 to 1, which the program prints with --json.

@@ -64,13 +64,15 @@ def _remove(folder: str, process: int) -> None:
 
 
 class RunFile:
-    """An open run file, returned by `open_run` and `evod.run`. Its tables have the same columns as those of `evod export`.
+    """An open run file, returned by `open_run` and `evod.run`. Its tables have the same columns as those of `evod
+    export`.
 
     All methods raise DamagedData if the file is damaged.
     """
 
     def __init__(
-        self, path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None, temporary: str | None = None
+        self, path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None,
+                 temporary: str | None = None
     ) -> None:
         self.path = pathlib.Path(path)
         self._program = program
@@ -78,8 +80,9 @@ class RunFile:
         self._clean_up = weakref.finalize(self, _remove, temporary, os.getpid()) if temporary is not None else None
         if not self.path.is_file():
             raise FileNotFound(f"there is no run file {self.path}")
-        # SQLite creates its shared memory file beside the run file, which fails in a read-only folder. No server can write to
-        # a run file in such a folder, so the option `immutable` lets SQLite read without the shared memory file.
+        # SQLite creates its shared memory file beside the run file, which fails in a read-only folder. No server can
+        # write to a run file in such a folder, so the option `immutable` lets SQLite read without the shared memory
+        # file.
         address = f"file:{urllib.parse.quote(str(self.path.resolve()))}?mode=ro"
         if not os.access(self.path.resolve().parent, os.W_OK):
             address += "&immutable=1"
@@ -88,7 +91,8 @@ class RunFile:
         foreign: tuple[Any, ...] | None = None
         try:
             # A damaged or malicious file could contain a view in place of a table, with a query that never ends.
-            foreign = next(self._rows("SELECT type, name FROM sqlite_schema WHERE type NOT IN ('table', 'index')"), None)
+            foreign = next(self._rows("SELECT type, name FROM sqlite_schema WHERE type NOT IN ('table', 'index')"),
+                           None)
             if foreign:
                 raise DamagedData("")  # the handler below adds the name of the file
             self.about: Mapping[str, str] = {key: value for key, value in self._rows("SELECT key, value FROM run")}
@@ -103,7 +107,8 @@ class RunFile:
         return f"<run of {self.name} in {self.path}, seed {self.seed}, {self.last_generation} generations begun>"
 
     def _repr_html_(self) -> str:
-        fields = {"seed": self.seed, "run_id": self.run_id, "generations begun": self.last_generation, "file": self.path}
+        fields = {"seed": self.seed, "run_id": self.run_id, "generations begun": self.last_generation,
+                  "file": self.path}
         return html_table((), fields.items(), f"run of {self.name}")
 
     def __enter__(self) -> RunFile:
@@ -143,7 +148,8 @@ class RunFile:
 
     @property
     def retained_generations(self) -> list[int]:
-        """The generations whose organisms are in the file. The retention rule of the run has purged all other generations."""
+        """The generations whose organisms are in the file. The retention rule of the run has purged all other
+        generations."""
         return [row[0] for row in self._rows("SELECT DISTINCT generation FROM population ORDER BY generation")]
 
     def parameters_of(self, generation: int) -> dict[str, Any]:
@@ -177,7 +183,8 @@ class RunFile:
         return self._with_more_genes(table) if len(self.gene_names) > len(GENE_NAMES) else table
 
     def organisms(self) -> Any:
-        """Returns all organisms of the retained generations as a DataFrame: origin, parents, genes, fitness and fate."""
+        """Returns all organisms of the retained generations as a DataFrame: origin, parents, genes, fitness and
+        fate."""
         simulated_s = {
             (generation, island): seconds
             for generation, island, seconds in self._rows("SELECT generation, island, simulated_s FROM statistics")
@@ -190,7 +197,8 @@ class RunFile:
         }
         rows = self._rows(
             "SELECT generation, island, organism_count, elite_count, survivor_count, chromosomes, parents, fitness, "
-            "lived_ticks, cause FROM population LEFT JOIN outcome USING (generation, island) ORDER BY generation, island"
+            "lived_ticks, cause FROM population LEFT JOIN outcome USING (generation, island) ORDER BY generation, "
+            "island"
         )
         parts = []
         for generation, island, count, elite, survivors, genes, parents, fitness, lived_ticks, cause in rows:
@@ -273,7 +281,8 @@ class RunFile:
         Parameters
         ----------
         of
-            An organism as (generation, island, id). If it is given, the table contains only the ancestors of this organism.
+            An organism as (generation, island, id). If it is given, the table contains only the ancestors of this
+            organism.
         """
         which = [] if of is None else ["--of", ":".join(map(str, of))]
         command = [find_program(self._program), "export", str(self.path), "--what", "lineage", *which]
@@ -290,7 +299,8 @@ class RunFile:
         return plotting.plot_genes(self.generations(), self.gene_names, ax)
 
     def plot_selection(self, gene: str, ax: Any = None) -> Any:
-        """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
+        """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the
+        axes."""
         return plotting.plot_selection(self.generations(), self.gene_names, gene, ax)
 
     def plot_lineage(self, of: tuple[int, int, int] | None = None, ax: Any = None) -> Any:
@@ -309,7 +319,8 @@ class RunFile:
         statistics, accounts = [], []
         for of_island, account in rows:
             statistics.append(_array(of_island, "<f8", 4 * len(names)))
-            accounts.append(_array(account, "<f8", 4 * len(names)) if account else numpy.full(4 * len(names), numpy.nan))
+            accounts.append(_array(account, "<f8", 4 * len(names)) if account
+                            else numpy.full(4 * len(names), numpy.nan))
         parts = {"statistics": (statistics, ("mean", "deviation", "min", "max")), "account": (accounts, ACCOUNT_PARTS)}
         more = {
             part: pandas().DataFrame(
@@ -348,7 +359,8 @@ class RunFile:
         retained = self.retained_generations
         if self.first_generation <= generation <= self.last_generation:
             return NotFound(
-                f"{self.path} no longer contains the organisms of generation {generation}: `evod export` simulates it again"
+                f"{self.path} no longer contains the organisms of generation {generation}: `evod export` simulates it "
+                "again"
             )
         allowed = f"{retained[0]} to {retained[-1]}" if retained else "none"
         return NotFound(f"generation: got {generation}, allowed in {self.path}: {allowed}")

@@ -88,10 +88,11 @@ class SnapshotDecoder:
         if before is not None and before[0] == message.generation and before[1] < message.tick:
             self._tick_s = (message.simulated_s - before[2]) / (message.tick - before[1])
         elif before is None or before[0] != message.generation:
-            # The parameter tick_s can change between generations. Without another snapshot of this generation, its value is
-            # estimated by its mean over the run.
+            # The parameter tick_s can change between generations. Without another snapshot of this generation, its
+            # value is estimated by its mean over the run.
             self._tick_s = message.simulated_s / message.tick if message.tick else 0.0
-        return self._whole.ticks * self._tick_s if message.codec == stream_pb2.CODEC_DELTA and not message.tile_px else 0.0
+        is_delta = message.codec == stream_pb2.CODEC_DELTA and not message.tile_px
+        return self._whole.ticks * self._tick_s if is_delta else 0.0
 
     def _decode_tiles(self, message: stream_pb2.SnapshotFrame) -> tuple[Content, tuple[Tile, ...]]:
         before, self._tiles = self._tiles, {}
@@ -127,7 +128,8 @@ class SnapshotDecoder:
         return _merged_tiles(contents), tuple(tiles)
 
 
-# ---- bodies -----------------------------------------------------------------------------------------------------------
+# ---- bodies
+# -----------------------------------------------------------------------------------------------------------
 
 
 class _Body:
@@ -217,7 +219,8 @@ _of_thread = threading.local()
 
 
 def _unpacker() -> Any:
-    """Returns this thread's decompressor. Threads cannot share one, because decompression releases the interpreter lock."""
+    """Returns this thread's decompressor. Threads cannot share one, because decompression releases the interpreter
+    lock."""
     if zstandard is None:
         raise DamagedData("a snapshot is compressed, but the package zstandard is not installed")
     if not hasattr(_of_thread, "unpacker"):
@@ -237,21 +240,24 @@ def _unpack(data: bytes, bytes_max: int) -> bytes:
 
 
 def _plain(message: stream_pb2.SnapshotFrame) -> Content:
-    """Returns the entities in a snapshot with CODEC_PLAIN. Converts lengths to 1/16 px, the unit of the other codecs."""
+    """Returns the entities in a snapshot with CODEC_PLAIN. Converts lengths to 1/16 px, the unit of the other
+    codecs."""
     if message.codec != stream_pb2.CODEC_PLAIN:
         raise DamagedData(f"a snapshot's codec is {message.codec}, allowed: 2 and 3")
     content = {}
     for (name, sizes), count in zip(_SIZES.items(), _counts_of(message)):
         columns = getattr(message.plain, name)
         fields = {"x": "x_px", "y": "y_px"} | {size: size if size == "health" else size + "_px" for size in sizes}
-        kind: dict[str, Any] = {field: numpy.array(getattr(columns, column), numpy.float64) for field, column in fields.items()}
+        kind: dict[str, Any] = {field: numpy.array(getattr(columns, column), numpy.float64) for field,
+                                column in fields.items()}
         if name in _HAVE_IDS:
             kind = {"id": numpy.array(columns.id, numpy.uint32)} | kind
             if numpy.any(kind["id"][1:] <= kind["id"][:-1]):
                 raise DamagedData(f"a snapshot's plain.{name}.id does not rise")
         for field, column in kind.items():
             if len(column) != count:
-                raise DamagedData(f"a snapshot's plain.{name} has {len(column)} of {field}, not {count} as its count says")
+                raise DamagedData(f"a snapshot's plain.{name} has {len(column)} of {field}, not {count} as its count "
+                                  "says")
             if not numpy.all(numpy.isfinite(column)):
                 raise DamagedData(f"a snapshot's plain.{name} has a number in {field} that is not finite")
             if field != "id":
@@ -278,7 +284,8 @@ def _position_kind(position_bytes: int) -> str:
     return f"<u{position_bytes}"
 
 
-# ---- deltas -------------------------------------------------------------------------------------------------------------
+# ---- deltas
+# -------------------------------------------------------------------------------------------------------------
 
 
 class _Deltas:
@@ -401,7 +408,8 @@ def _merged(stayed: Mapping[str, Array], come: Mapping[str, Array], by_id: bool)
     return columns
 
 
-# ---- tiles ----------------------------------------------------------------------------------------------------------------
+# ---- tiles
+# ----------------------------------------------------------------------------------------------------------------
 
 
 def _dots(body: _Body, counts: Mapping[str, int], cell_px: float, left: float, top: float) -> Mapping[str, Array]:
@@ -430,7 +438,8 @@ def _merged_tiles(contents: Sequence[Content]) -> Content:
     together: dict[str, Columns] = {}
     for name, sizes in _SIZES.items():
         # Tiles without organisms have no headings.
-        with_headings = {"heading" in content[name] for content in contents if name == "organisms" and len(content[name]["x"])}
+        with_headings = {"heading" in content[name] for content in contents if name == "organisms"
+                         and len(content[name]["x"])}
         if len(with_headings) == 2:
             raise DamagedData("only some tiles of a snapshot have headings")
         parts = [content for content in contents if not with_headings or len(content[name]["x"])]

@@ -60,8 +60,8 @@ Self = TypeVar("Self", bound="_Entities[Any]")
 class _Entities(Generic[One]):
     """The entities of one kind, in the order of the ids. All fields are arrays of shape (count,).
 
-    Indexing with a number, or iterating, returns one entity. Indexing with a slice, a mask or an array of indices returns
-    the selected entities.
+    Indexing with a number, or iterating, returns one entity. Indexing with a slice, a mask or an array of indices
+    returns the selected entities.
     """
 
     _one: type[One]
@@ -167,7 +167,8 @@ class Organisms(_Entities[Organism]):
     def _table(self) -> dict[str, Any]:
         genes = {} if self._genes is None else self._genes.to_dict()
         headings = {"heading": self.headings} if "heading" in self._columns else {}
-        return super()._table() | headings | {"velocity_x_px_s": self.velocities[:, 0], "velocity_y_px_s": self.velocities[:, 1]} | genes
+        return super()._table() | headings | {"velocity_x_px_s": self.velocities[:, 0],
+                                              "velocity_y_px_s": self.velocities[:, 1]} | genes
 
     @property
     def genes(self) -> Genes:
@@ -186,8 +187,8 @@ class Organisms(_Entities[Organism]):
     def velocities(self) -> Array:
         """The mean velocity of each organism since the previous snapshot of the stream, shape (count, 2), in px/s.
 
-        Computed from the displacements in the stream, which are multiples of 1/16 px. nan if the stream has none: in the
-        first snapshot of a world that does not run, and in snapshots with a view.
+        Computed from the displacements in the stream, which are multiples of 1/16 px. nan if the stream has none: in
+        the first snapshot of a world that does not run, and in snapshots with a view.
         """
         if not self._interval_s or "dx" not in self._columns:
             return numpy.full((len(self), 2), numpy.nan)
@@ -197,8 +198,8 @@ class Organisms(_Entities[Organism]):
     def headings(self) -> Array:
         """The direction in which each organism heads: radians, -pi to pi, from +x (right) toward +y (down).
 
-        Multiples of 1/256 of a full turn; ``world.organism()`` has the exact heading of one organism. nan if organisms have
-        no heading, that is, unless the parameter ``controller`` of the world is ``network``.
+        Multiples of 1/256 of a full turn; ``world.organism()`` has the exact heading of one organism. nan if organisms
+        have no heading, that is, unless the parameter ``controller`` of the world is ``network``.
         """
         if "heading" not in self._columns:
             return numpy.full(len(self), numpy.nan)
@@ -217,7 +218,8 @@ class Organisms(_Entities[Organism]):
 
 
 class Boxes(_Entities[Box]):
-    """The crates or the obstacles of an island. All fields are arrays of shape (count,). An id is the index of the box."""
+    """The crates or the obstacles of an island. All fields are arrays of shape (count,). An id is the index of the
+    box."""
 
     _one = Box
 
@@ -242,9 +244,11 @@ class Tile:
     top_px: float
     side_px: int
     counts: Mapping[str, int]  #: number of entities of each kind: "organisms", "food", "poison", "crates", "obstacles"
-    #: At Detail.DOTS, the positions by kind of entity: shape (2, count), x and y in px, rounded to 1/256 of the tile's side.
+    #: At Detail.DOTS, the positions by kind of entity: shape (2, count), x and y in px, rounded to 1/256 of the tile's
+    #: side.
     dots: Mapping[str, Array] | None = None
-    #: At Detail.DENSITY, the number of entities per cell, by kind of entity: shape (cells, cells), indexed by row and column.
+    #: At Detail.DENSITY, the number of entities per cell, by kind of entity: shape (cells, cells), indexed by row and
+    #: column.
     density: Mapping[str, Array] | None = None
 
 
@@ -305,7 +309,8 @@ class Snapshot:
 
     def _repr_html_(self) -> str:
         counts = ((kind, len(getattr(self, kind))) for kind in ("organisms", "food", "poison", "crates", "obstacles"))
-        moment = ((name, getattr(self, name)) for name in ("world", "island", "generation", "tick", "simulated_s", "state"))
+        moment = ((name, getattr(self, name)) for name in ("world", "island", "generation", "tick", "simulated_s",
+                                                           "state"))
         return html_table((), (*moment, *counts), "snapshot")
 
     def __repr__(self) -> str:

@@ -23,12 +23,13 @@ def pandas() -> Any:
 def read_csv(text: str, **options: Any) -> Any:
     """Reads a table that evod wrote as CSV.
 
-    Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats. Parents become
-    whole numbers, <NA> for organisms without parents.
+    Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats. Parents
+    become whole numbers, <NA> for organisms without parents.
     """
     kinds: dict[str, Any] = {name: str for name in ("sender", "kind", "request", "origin", "cause")}
     kinds |= {name: numpy.float32 for name in _genes_in(text)}
-    kinds |= {f"parent_{which}{part}": "Int64" for which in ("first", "second") for part in ("", "_generation", "_island")}
+    kinds |= {f"parent_{which}{part}": "Int64" for which in ("first", "second")
+              for part in ("", "_generation", "_island")}
     chosen = {name: str for name in ("user", "program", "address")}  # text, also if it is empty or "NA"
     return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds, converters=chosen, **options)
 
@@ -46,7 +47,8 @@ def html_table(heading: Sequence[str], rows: Iterable[Sequence[object]], caption
     """Returns a table as HTML. Without a heading, the first cell of each row is the heading of the row."""
 
     def row(cells: Sequence[object], kinds: Sequence[str]) -> str:
-        return "<tr>" + "".join(f"<{kind}>{html.escape(str(cell))}</{kind}>" for cell, kind in zip(cells, kinds)) + "</tr>"
+        return "<tr>" + "".join(f"<{kind}>{html.escape(str(cell))}</{kind}>" for cell,
+                                kind in zip(cells, kinds)) + "</tr>"
 
     parts = [f"<caption>{html.escape(caption)}</caption>"] if caption else []
     parts += [row(heading, ["th"] * len(heading))] if heading else []

@@ -25,8 +25,8 @@ class Backoff:
     def failed(self, late: bool = False) -> None:
         """Call it when the connection was lost or an attempt to connect has failed.
 
-        late  the server is full. Another attempt soon would take the place of another client, or of another session of the
-              same user.
+        late  the server is full. Another attempt soon would take the place of another client, or of another session of
+              the same user.
         """
         self.failed_at = now = time.monotonic()
         self._backoff_s = BACKOFF_MAX_S if late else self._backoff_s
@@ -41,7 +41,8 @@ class Backoff:
 
 
 def enable_keepalive(connection: socket.socket) -> None:
-    """Enables TCP keepalive, which detects a peer that disappeared without closing the connection: a suspended laptop."""
+    """Enables TCP keepalive, which detects a peer that disappeared without closing the connection: a suspended
+    laptop."""
     connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
     for option, value in (("TCP_KEEPIDLE", 10), ("TCP_KEEPINTVL", 5), ("TCP_KEEPCNT", 3)):
@@ -65,7 +66,8 @@ def connection_error(error: Exception, server: Endpoint) -> NoConnection | Damag
         return NoConnection(f"no TLS with {server}: {(error.reason or str(error)).replace('_', ' ').lower()}")
     if isinstance(error, TimeoutError):
         return NoConnection(
-            f"{server} did not answer within {CONNECT_TIMEOUT_S:g} s: check the address, and the network and firewalls on "
+            f"{server} did not answer within {CONNECT_TIMEOUT_S:g} s: check the address, and the network and firewalls "
+            "on "
             "the way"
         )
     return NoConnection(f"the connection to {server} failed: {getattr(error, 'strerror', None) or error}")
@@ -77,7 +79,8 @@ def closed_by(server: Endpoint) -> NoConnection:
 
 
 class Transport:
-    """Encrypts and decrypts the bytes of a connection if TLS is used; otherwise returns them unchanged. Has no socket."""
+    """Encrypts and decrypts the bytes of a connection if TLS is used; otherwise returns them unchanged. Has no
+    socket."""
 
     def __init__(self, server: Endpoint, tls: ssl.SSLContext | None) -> None:
         self._tls: ssl.SSLObject | None = None
@@ -107,7 +110,8 @@ class Transport:
         return self._to_send.read()
 
     def incoming(self, data: bytes) -> bytes:
-        """Decrypts bytes that were read from the socket. Call outgoing() afterwards, because the handshake may need a reply.
+        """Decrypts bytes that were read from the socket. Call outgoing() afterwards, because the handshake may need a
+        reply.
 
         Raises ssl.SSLError if the handshake fails or a certificate is rejected.
         """

@@ -15,8 +15,8 @@ parser.add_argument("--seeds", type=int, default=10)
 parser.add_argument("--output", default="compare_selection.png")
 options = parser.parse_args()
 
-# Half the width of the 95 % confidence interval in standard errors: a quantile of Student's t-distribution, computed from its
-# series expansion.
+# Half the width of the 95 % confidence interval in standard errors: a quantile of Student's t-distribution, computed
+# from its series expansion.
 z, runs_less_1 = 1.96, options.seeds - 1
 errors = z + (z**3 + z) / (4 * runs_less_1) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * runs_less_1**2)
 

@@ -38,5 +38,6 @@ for gene in evod.GENE_NAMES:
 right.set(xlabel="generation", ylabel="gene of the first parents")
 right.legend(frameon=False)
 figure.savefig(options.output)
-print(f"organism {fittest[2]} of generation {fittest[0]} has {len(lineage) - 1} ancestors; its line of first parents begins with "
+print(f"organism {fittest[2]} of generation {fittest[0]} has {len(lineage) - 1} ancestors; its line of first parents "
+      "begins with "
       f"organism {line[-1][2]} of generation {line[-1][0]}")

@@ -1,4 +1,5 @@
-"""Sweeps two parameters and plots the final mean fitness as a heat map. The server runs several worlds at the same time.
+"""Sweeps two parameters and plots the final mean fitness as a heat map. The server runs several worlds at the same
+time.
 
     sweep_heat_map.py [--generations N] [--seeds N] [--steps N] [--output FILE]
 """

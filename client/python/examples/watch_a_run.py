@@ -9,7 +9,8 @@ import numpy
 import evod
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("server", nargs="?", help="HOST:PORT of a server that grants the role controller; default: a private server")
+parser.add_argument("server", nargs="?", help="HOST:PORT of a server that grants the role controller; default: a "
+                                              "private server")
 parser.add_argument("--generations", type=int, default=3)
 options = parser.parse_args()
 
@@ -21,7 +22,8 @@ with evod.connect(options.server) if options.server else evod.local(seed=42, spe
             organisms, food = snapshot.organisms, snapshot.food
             away_px = numpy.hypot(organisms.x_px[:, None] - food.x_px, organisms.y_px[:, None] - food.y_px)
             if away_px.size:
-                print(f"generation {snapshot.generation}, {snapshot.generation_tick / 60:4.1f} s: {len(organisms)} alive, "
+                print(f"generation {snapshot.generation}, {snapshot.generation_tick / 60:4.1f} s: {len(organisms)} "
+                      "alive, "
                       f"mean health {organisms.health.mean():5.1f}, food {away_px.min(axis=1).mean():4.0f} px away")
             if snapshot.state != evod.RUNNING:
                 break

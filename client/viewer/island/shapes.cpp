@@ -1,6 +1,8 @@
 #define GL_GLEXT_PROTOTYPES
 #include "client/viewer/island/shapes.h"
 
+#include "client/viewer/island/shape_shaders.h"
+
 #include <GL/gl.h>
 #include <GL/glext.h>
 
@@ -14,149 +16,33 @@ namespace evod::viewer {
 
 namespace {
 
-// The shader subtracts the camera's centre from a position before it multiplies by the zoom. The difference of nearby
-// positions is exact in floats, but each product would be rounded.
-constexpr const char* vertex_source = R"(
+// Reads a shape, after shape.vert.glsl. The shader subtracts the camera's centre from a position before it multiplies by the
+// zoom. The difference of nearby positions is exact in floats, but each product would be rounded.
+constexpr const char* read_source = R"(
 uniform samplerBuffer shapes;        // centre and half size; for lines and arrows, begin and end
 uniform samplerBuffer colours;
-uniform bool coloured;               // whether each shape has its own colour
-uniform vec2 pixel_size;             // size of one pixel in clip space
-uniform vec2 origin;                 // centre of the viewport, in pixels
 uniform vec2 centre;
-uniform float zoom, half_pixels_min, line_pixels, edge_pixels;
-uniform vec4 fill, fill_low;
-#if POINT
-flat out float reach;                // half the size of the point, in pixels
-#else
-out vec2 place;                      // offset from the shape's centre, in pixels, along the shape's axes
-#endif
-flat out vec2 half_size;
-flat out vec4 own_fill;
-flat out vec3 arc;                   // of a body: direction across the end of the arc; health
-flat out float rim;                  // of a body: width of the arc; 0: none
-void main() {
-    int index = POINT == 1 ? gl_VertexID : gl_VertexID / 3;
+uniform float zoom;
+Source read_source(int index) {
     vec4 shape = texelFetch(shapes, index);
-    own_fill = coloured ? texelFetch(colours, index) : fill;
-    vec2 middle = (shape.xy - centre) * zoom, along = vec2(1.0, 0.0), around = vec2(0.5);
-    half_size = max(shape.zw * zoom, vec2(half_pixels_min));
-    arc = vec3(0.0);
-    rim = 0.0;
+    vec2 extent = shape.zw;
 #if FORM == LINE || FORM == ARROW || FORM == SOFT_LINE
-    vec2 way = (shape.zw - shape.xy) * zoom;
-    float pixels = length(way);
-    middle += way / 2.0;
-    along = pixels > 0.0 ? way / pixels : along;
-    half_size = vec2(pixels, line_pixels) / 2.0;
-    around += FORM == ARROW ? vec2(line_pixels, 2.5 * line_pixels) : vec2(line_pixels);
-#elif FORM == BODY
-    half_size = half_size.xx;
-    rim = half_size.x < 0.8 * edge_pixels ? 0.0 : min(edge_pixels, 0.4 * half_size.x); // a small body has no arc
-    around += 1.6 * rim;
-    arc = vec3(cos(6.2831853 * shape.w), sin(6.2831853 * shape.w), shape.w);
-    own_fill = coloured ? own_fill : mix(fill_low, fill, shape.w);
-#elif FORM == LEAF || FORM == STAR
-    around += 0.5 + 0.5 * half_size;
+    extent -= shape.xy;
 #endif
-#if POINT
-    bool dot = half_size.x <= 0.5; // fills the pixel at its centre
-    reach = dot ? 0.5 : half_size.x + around.x;
-    gl_PointSize = 2.0 * reach;
-    vec2 pixel = dot ? floor(origin + middle) + 0.5 : origin + middle;
-#else
-    int corner_index = gl_VertexID % 3; // one triangle covers the rectangle around the shape
-    vec2 corner = vec2(corner_index == 1, corner_index == 2) * 4.0 - 1.0;
-    place = corner * (half_size + around);
-    vec2 pixel = origin + middle + along * place.x + vec2(-along.y, along.x) * place.y;
-#endif
-    gl_Position = vec4(pixel.x * pixel_size.x - 1.0, 1.0 - pixel.y * pixel_size.y, 0.0, 1.0);
+    vec4 colour = coloured ? texelFetch(colours, index) : vec4(0.0);
+    return Source((shape.xy - centre) * zoom, extent * zoom, shape.w, colour);
 }
 )";
 
-// The shader computes how much of a pixel a shape covers from the distance between the pixel's centre and the outline.
-constexpr const char* fragment_source = R"(
-#if POINT
-flat in float reach;
-#define place ((2.0 * gl_PointCoord - 1.0) * reach)
-#else
-in vec2 place;
-#endif
-flat in vec2 half_size;
-flat in vec4 own_fill;
-flat in vec3 arc;
-flat in float rim;
-uniform vec4 edge;
-uniform float edge_pixels, line_pixels;
-out vec4 colour;                     // with premultiplied alpha
-float covered(float outside) {
-    return clamp(0.5 - outside, 0.0, 1.0);
-}
-#if FORM == BODY
-void main() {
-    float radius = half_size.x, distance = length(place);
-    float outer = radius + 1.6 * rim, share = distance / radius;
-    float before_end = -dot(place, arc.xy), after_begin = place.x;
-    float within = arc.z < 0.5 ? min(after_begin, before_end) : max(after_begin, before_end);
-    float lit = arc.z <= 0.0 ? 0.0 : arc.z >= 1.0 ? 1.0 : clamp(within + 0.5, 0.0, 1.0);
-    float ring = covered(distance - outer) - covered(distance - outer + rim);
-    colour = vec4(own_fill.rgb * (1.0 - 0.2 * share * share), 1.0) * own_fill.a * covered(distance - radius) +
-             vec4(edge.rgb, 1.0) * edge.a * ring * (0.2 + 0.8 * lit);
-}
-#elif FORM == RIPPLE
-void main() {
-    float share = length(place) / half_size.x;
-    colour = vec4(own_fill.rgb, 1.0) * own_fill.a * share * share * covered(length(place) - half_size.x);
-}
-#elif FORM == SOFT_LINE
-void main() {
-    float across = clamp(1.0 - abs(place.y) / half_size.y, 0.0, 1.0);
-    colour = vec4(own_fill.rgb, 1.0) * own_fill.a * across * covered(abs(place.x) - half_size.x);
-}
-#else
-float distance_outside() {
-    vec2 beyond = abs(place) - half_size;
-#if FORM == CIRCLE
-    return length(place) - half_size.x;
-#elif FORM == RECTANGLE
-    return max(beyond.x, beyond.y);
-#elif FORM == LEAF                   // the overlap of two discs
-    vec2 tilted = vec2(place.x - place.y, place.x + place.y) * 0.7071;
-    return length(vec2(tilted.x, abs(tilted.y) + 1.018 * half_size.x)) - 2.068 * half_size.x;
-#elif FORM == STAR                   // the distance from the line between a tip and the valley beside it
-    vec2 tilted = abs(vec2(place.x - place.y, place.x + place.y)) * 0.7071;
-    tilted = tilted.y > tilted.x ? tilted.yx : tilted;
-    return dot(tilted - vec2(2.0 * half_size.x, 0.0), vec2(0.339, 0.941));
-#else
-    float outside = length(vec2(max(beyond.x, 0.0), place.y)) - half_size.y;
-#if FORM == ARROW
-    float head = min(4.5 * line_pixels, half_size.x), behind_tip = half_size.x - place.x;
-    outside = min(outside, max((abs(place.y) - behind_tip / 2.0) * 0.894, behind_tip - head));
-#endif
-    return outside;
-#endif
-}
-void main() {
-    float outside = distance_outside();
-    float whole = covered(outside), inner = covered(outside + edge_pixels);
-    vec3 inside = own_fill.rgb;
-#if FORM == LEAF
-    float vein = 0.09 * half_size.x;
-    inside *= 1.0 - 0.35 * covered(abs(place.x + place.y) * 0.7071 - vein) * clamp(vein - 0.3, 0.0, 1.0);
-#endif
-    colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(inside, 1.0) * own_fill.a * inner;
-}
-#endif
-)";
-
-std::string with_form(const char* source, Form form, bool point) {
+std::string with_form(const std::string& source, Form form, bool point) {
     constexpr std::array<const char*, form_count> names{"CIRCLE", "RECTANGLE", "LINE",   "ARROW",    "BODY",
                                                         "LEAF",   "STAR",      "RIPPLE", "SOFT_LINE"};
     std::string text = "#version 330 core\n";
     for (std::size_t i = 0; i < names.size(); ++i) {
         text += "#define " + std::string{names[i]} + " " + std::to_string(i) + "\n";
     }
-    return text + "#define POINT " + (point ? "1" : "0") + "\n#define FORM " + names[static_cast<std::size_t>(form)] +
-           "\n" + source;
+    return text + "#define BARE 0\n#define POINT " + (point ? "1" : "0") + "\n#define FORM " +
+           names[static_cast<std::size_t>(form)] + "\n" + source;
 }
 
 unsigned compile(GLenum kind, const std::string& source) {
@@ -242,8 +128,9 @@ const ShapePainter::Program& ShapePainter::program_of(Form form, bool point) {
     if (program.name != 0) {
         return program;
     }
-    const unsigned vertex = compile(GL_VERTEX_SHADER, with_form(vertex_source, form, point));
-    const unsigned fragment = compile(GL_FRAGMENT_SHADER, with_form(fragment_source, form, point));
+    const unsigned vertex =
+        compile(GL_VERTEX_SHADER, with_form(shape_vertex_source + std::string{read_source}, form, point));
+    const unsigned fragment = compile(GL_FRAGMENT_SHADER, with_form(shape_fragment_source, form, point));
     program.name = glCreateProgram();
     glAttachShader(program.name, vertex);
     glAttachShader(program.name, fragment);

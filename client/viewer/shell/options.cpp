@@ -114,11 +114,66 @@ ViewOptions view_of(const Options& options, const ViewOptions& stored) {
     return view;
 }
 
+namespace {
+
+/// Options whose texts are converted after the command line was parsed.
+struct Texts {
+    std::string size, skin, background;
+};
+
+void add_recording_options(Command& app, command_line::Option recording, Options::Record& record) {
+    app.add_option("--record-ticks", &record.ticks,
+                   "stop after this many ticks; default: at the end of the run, or with Ctrl+C")
+        .needs(recording)
+        .check(WholeNumber{});
+    app.add_option("--record-generations", &record.generations, "stop when this many more generations have ended")
+        .needs(recording)
+        .check(WholeNumber{.min = 1});
+    app.add_option("--every", &record.every_ticks, "number of ticks between two frames, 1 to 1000000")
+        .needs(recording)
+        .show_default()
+        .check(WholeNumber{1, 1'000'000});
+    app.add_option("--fps", &record.fps,
+                   "frames per second of a film, 0.1 to 1000; 60 shows ticks of 1/60 s in real time")
+        .needs(recording)
+        .show_default()
+        .check(RealNumber{0.1, 1000});
+}
+
+/// Converts texts, and reads the script. Returns what is wrong; "" if nothing is.
+std::string convert_texts(const Texts& texts, Options& options) {
+    if (!texts.size.empty()) {
+        if (const std::string error = parse_size(texts.size, options.size.emplace()); !error.empty()) {
+            return "--size: " + error;
+        }
+    }
+    if (const std::string error = parse_name(texts.skin, skin_names, options.skin); !error.empty()) {
+        return "--skin: " + error;
+    }
+    if (const std::string error = parse_name(texts.background, background_names, options.background); !error.empty()) {
+        return "--background: " + error;
+    }
+    if (options.skin == Skin::Classic && options.background) {
+        return "--background: got " + texts.background + " with --skin classic, allowed only with --skin vivid";
+    }
+    if (!options.script_path.empty()) {
+        auto read = read_script(options.script_path);
+        if (!read) {
+            return read.error().what;
+        }
+        options.script = *std::move(read);
+    }
+    return "";
+}
+
+} // namespace
+
 std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Options options;
     Options::Screenshot screenshot;
     Options::Record record;
-    std::string server = "localhost", size;
+    std::string server = "localhost";
+    Texts texts;
     Command app{"evoview", "evoview: shows the worlds of an evod server in a window", "evoview " EVOD_VERSION};
     app.footer(footer + std::string{"\n\nActions of a script, one per line:\n"} + Script::reference());
     const auto where =
@@ -137,17 +192,16 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     app.add_option("--beside", &options.beside, "name of a second world to show in the right half");
     app.add_option("--past", &options.replay_generation, "start with a replay of the world at this generation")
         .check(WholeNumber{.min = 1});
-    app.add_option("--size", &size,
+    app.add_option("--size", &texts.size,
                    "size of the window or image in pixels, WIDTHxHEIGHT; default: 1280x720 times the scale");
     app.add_option("--scale", &options.scale,
                    "scale of text and widgets, 0.5 to 4; default: the scale of the display; 1 for images and films")
         .check(RealNumber{Gui::scale_min, Gui::scale_max});
-    std::string skin, background;
     app.add_option(
-        "--skin", &skin,
+        "--skin", &texts.skin,
         "vivid: filled bodies, leaves and stars; classic: hollow circles and dots on grey;\ndefault: the skin "
         "used last, or vivid; for images and films: vivid");
-    app.add_option("--background", &background, "background of the skin vivid: dark or light; default: dark");
+    app.add_option("--background", &texts.background, "background of the skin vivid: dark or light; default: dark");
     app.add_option("--freezer", &options.freezer,
                    "folder with frozen organisms and populations; default: ~/.local/share/evod/freezer");
     const auto start = app.add_flag("--start", &options.start, "show the start screen first");
@@ -172,22 +226,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
             .excludes(start)
             .excludes(tour)
             .excludes(script);
-    app.add_option("--record-ticks", &record.ticks,
-                   "stop after this many ticks; default: at the end of the run, or with Ctrl+C")
-        .needs(recording)
-        .check(WholeNumber{});
-    app.add_option("--record-generations", &record.generations, "stop when this many more generations have ended")
-        .needs(recording)
-        .check(WholeNumber{.min = 1});
-    app.add_option("--every", &record.every_ticks, "number of ticks between two frames, 1 to 1000000")
-        .needs(recording)
-        .show_default()
-        .check(WholeNumber{1, 1'000'000});
-    app.add_option("--fps", &record.fps,
-                   "frames per second of a film, 0.1 to 1000; 60 shows ticks of 1/60 s in real time")
-        .needs(recording)
-        .show_default()
-        .check(RealNumber{0.1, 1000});
+    add_recording_options(app, recording, record);
     const auto timeout =
         app.add_option("--timeout", &screenshot.timeout_s, "seconds to wait for a screenshot or a recorded frame")
             .show_default()
@@ -216,26 +255,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     if (timeout.is_given() && screenshot.path.empty() && record.path.empty()) {
         return app.reject("--timeout: allowed only with --screenshot or --record");
     }
-    if (!size.empty()) {
-        if (const std::string error = parse_size(size, options.size.emplace()); !error.empty()) {
-            return app.reject("--size: " + error);
-        }
-    }
-    if (const std::string error = parse_name(skin, skin_names, options.skin); !error.empty()) {
-        return app.reject("--skin: " + error);
-    }
-    if (const std::string error = parse_name(background, background_names, options.background); !error.empty()) {
-        return app.reject("--background: " + error);
-    }
-    if (options.skin == Skin::Classic && options.background) {
-        return app.reject("--background: got " + background + " with --skin classic, allowed only with --skin vivid");
-    }
-    if (!options.script_path.empty()) {
-        auto read = read_script(options.script_path);
-        if (!read) {
-            return app.reject(read.error().what);
-        }
-        options.script = *std::move(read);
+    if (const std::string error = convert_texts(texts, options); !error.empty()) {
+        return app.reject(error);
     }
     if (!screenshot.path.empty()) {
         options.screenshot = screenshot;

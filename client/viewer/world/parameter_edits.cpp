@@ -20,33 +20,6 @@ using evod::v1::ParameterValue;
 constexpr double decades_min = 100; // if max / min is above this ratio, the slider is logarithmic
 constexpr std::size_t transactions_kept = 100;
 
-// The title of a group of parameters, and the first parameter of the group. Groups are in the order of the registry.
-struct Topic {
-    std::string_view first, title;
-};
-constexpr Topic topics[] = {
-    {"fitness", "Experiment"},
-    {"island_count", "Islands"},
-    {"food_count", "Food and poison"},
-    {"obstacle_count", "Obstacles and crates"},
-    {"item_radius_px", "Items"},
-    {"health_loss_per_s", "Health and behaviour"},
-    {"damping", "Physics"},
-    {"radius_per_unit_px", "From genes to bodies"},
-    {"normal_speed_cost", "Costs of genes"},
-    {"population_size", "Population"},
-    {"fitness_scaling", "Selection"},
-    {"crossover", "Crossover"},
-    {"rearranging", "Mutation"},
-    {"initial_gene_min", "Bounds of genes"},
-    {"generation_limit", "End of the run"},
-    {"migration", "Migration"},
-};
-
-constexpr std::string_view most_used_names[] = {
-    "selection", "tournament_size", "mutation_chance", "mutation_step", "population_size", "food_count", "poison_count",
-};
-
 constexpr std::size_t unit_length_max = 10; // longer units do not fit into a field
 
 std::string plain(std::string_view text) {
@@ -182,11 +155,9 @@ bool matches(const ParameterDescription& parameter, std::string_view group, std:
 
 ParameterGroup most_used(std::span<const ParameterDescription> registry) {
     ParameterGroup most{"Most used", {}};
-    for (const std::string_view name : most_used_names) {
-        const auto found = std::ranges::find(
-            registry, name, [](const auto& parameter) -> std::string_view { return parameter.name(); });
-        if (found != registry.end()) {
-            most.members.push_back(static_cast<std::size_t>(found - registry.begin()));
+    for (std::size_t i = 0; i < registry.size(); ++i) {
+        if (registry[i].is_most_used()) {
+            most.members.push_back(i);
         }
     }
     return most;
@@ -195,11 +166,9 @@ ParameterGroup most_used(std::span<const ParameterDescription> registry) {
 std::vector<ParameterGroup> group(std::span<const ParameterDescription> registry) {
     std::vector<ParameterGroup> groups;
     for (std::size_t i = 0; i < registry.size(); ++i) {
-        const auto* topic = std::ranges::find(topics, registry[i].name(), &Topic::first);
-        if (topic != std::end(topics)) {
-            groups.push_back({topic->title, {}});
-        } else if (groups.empty()) {
-            groups.push_back({"General", {}});
+        const std::string& topic = registry[i].topic();
+        if (groups.empty() || groups.back().title != topic) {
+            groups.push_back({topic, {}});
         }
         groups.back().members.push_back(i);
     }

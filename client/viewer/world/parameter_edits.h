@@ -52,15 +52,14 @@ bool matches(const evod::v1::ParameterDescription& parameter, std::string_view g
 
 /// Parameters that are shown under one heading.
 struct ParameterGroup {
-    std::string_view title;
+    std::string title;
     std::vector<std::size_t> members; // parameter indices
 };
 
-/// Returns the parameters that users change most often, in the order in which they are shown.
+/// Returns the parameters that users change most often, in the order of the registry.
 ParameterGroup most_used(std::span<const evod::v1::ParameterDescription> registry);
 
-/// Groups the registry by topic, in the order of the registry. A parameter that evoview does not know belongs to the
-/// topic of the parameter before it.
+/// Groups the registry by topic, in the order of the registry.
 std::vector<ParameterGroup> group(std::span<const evod::v1::ParameterDescription> registry);
 
 class ParameterEdits {

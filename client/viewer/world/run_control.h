@@ -59,8 +59,6 @@ class RunControl {
     const std::string& world() const { return world_; }
     const std::string& run_id() const { return run_id_; }
     std::uint64_t tick() const { return tick_; }
-    /// Returns whether the world is running to a given tick, at which it will pause.
-    bool stepping() const { return step_target_ > tick_; }
     evod::v1::RunState state() const { return state_; }
     const evod::v1::Speed& speed() const { return speed_; }
     evod::v1::Outcome outcome() const { return outcome_; }

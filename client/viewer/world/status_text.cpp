@@ -9,19 +9,19 @@ namespace evod::viewer {
 
 namespace {
 
+/// Returns the field name without the name of its request: "fork_world.name" → "name".
+std::string last_field_name(std::string_view field) {
+    return std::string{field.substr(field.rfind('.') + 1)};
+}
+
+} // namespace
+
 std::string capitalised(std::string text) {
     if (!text.empty()) {
         text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     }
     return text;
 }
-
-/// Returns the field name without the name of its request: "fork_world.name" → "name".
-std::string last_field_name(const std::string& field) {
-    return field.substr(field.rfind('.') + 1);
-}
-
-} // namespace
 
 std::string speed_text(const evod::v1::Speed& speed) {
     if (speed.max()) {
@@ -34,16 +34,7 @@ std::string speed_text(const evod::v1::Speed& speed) {
 }
 
 std::string storage_text(const evod::v1::Storage& storage) {
-    switch (storage.state()) {
-    case evod::v1::STORAGE_STATE_FAILING:
-        return "Commands are refused: " + storage.reason();
-    case evod::v1::STORAGE_STATE_STALLED:
-        return "Worlds wait for the disk, commands are refused: " + storage.reason();
-    case evod::v1::STORAGE_STATE_BEHIND:
-        return "Worlds wait for the disk: " + storage.reason();
-    default:
-        return "";
-    }
+    return capitalised(core::to_text(storage));
 }
 
 const char* state_text(evod::v1::RunState state, const evod::v1::Storage& storage, bool awaits_fitness) {
@@ -66,21 +57,11 @@ const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storag
 }
 
 std::string refusal_text(const evod::v1::Status& status) {
-    const auto& violations = status.violations();
-    if (violations.size() == 1) {
-        const evod::v1::Violation& only = violations[0];
-        if (!only.field().empty() && status.message().starts_with(only.field())) { // the message says what is allowed
-            return capitalised(last_field_name(only.field()) + status.message().substr(only.field().size()));
-        }
-        return capitalised(status.message()) + (only.got().empty() ? "" : " (" + only.got() + ")") +
-               "; allowed: " + only.allowed();
+    std::string text = core::to_text(status, last_field_name);
+    for (std::size_t end = 0, line = 0; (end = text.find("\n  ", end)) != std::string::npos; ++line) {
+        text.replace(end, 3, line == 0 ? ": " : "; ");
     }
-    std::string text = capitalised(status.message());
-    for (int i = 0; i < violations.size(); ++i) {
-        text += (i == 0 ? ": " : "; ") + last_field_name(violations[i].field()) + " must be " +
-                violations[i].allowed() + (violations[i].got().empty() ? "" : ", not " + violations[i].got());
-    }
-    return text;
+    return capitalised(std::move(text));
 }
 
 std::string connection_loss_text(const core::ConnectionStatus& status, bool has_token) {

@@ -12,6 +12,7 @@
 
 namespace evod::viewer {
 
+std::string capitalised(std::string text);            // "the server is …" → "The server is …"
 std::string speed_text(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
 /// Returns the run state with a hint: "running", "waiting – Space runs". A running world may have to wait for the
 /// server's disk (`storage`), or for fitness from clients.
@@ -23,7 +24,7 @@ const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storag
 /// there is none.
 std::string storage_text(const evod::v1::Storage& storage);
 
-/// Returns the refusal as a sentence: "There is no such island (9); allowed: 0 to 7".
+/// Returns the refusal on one line: "No such island: island: got 9, allowed 0 to 7".
 std::string refusal_text(const evod::v1::Status& status);
 
 /// Returns why there is no connection, as a sentence to be shown beside the fields for server and token. Empty if there

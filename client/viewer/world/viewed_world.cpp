@@ -1,7 +1,6 @@
 #include "client/viewer/world/viewed_world.h"
 
 #include "client/core/page_link.h"
-#include "client/viewer/world/event_text.h"
 #include "client/viewer/world/status_text.h"
 
 #include <algorithm>
@@ -9,6 +8,17 @@
 #include <utility>
 
 namespace evod::viewer {
+
+namespace {
+
+/// Whether the window shows a notice about the event. All other events are visible in the panels.
+bool needs_notice(const evod::v1::Event& event) {
+    return event.has_server_going_away() || event.has_world_reset() || event.has_world_deleted() ||
+           event.has_world_damaged() || event.has_parameters_changed() || event.has_change_planned() ||
+           event.has_change_cancelled() || event.has_change_dropped() || event.has_placed() || event.has_removed();
+}
+
+} // namespace
 
 ViewedWorld::ViewedWorld(const WantedWorld& wanted)
     : server{wanted.connection}, feed{server, wanted}, replay{server, feed, wanted}, commands{server, feed, replay} {}
@@ -50,9 +60,8 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     if (!of_this_world && !event.has_server_going_away()) {
         return;
     }
-    std::string text = take_own_change(event) ? "" : event_text(event, feed.island_count() > 1);
-    if (!text.empty()) {
-        server.notice(std::move(text));
+    if (!take_own_change(event) && needs_notice(event)) {
+        server.notice(capitalised(core::to_text(event)));
     }
     if ((event.has_world_deleted() || event.has_world_damaged()) && of_this_world) {
         feed.control().forget();

@@ -40,11 +40,13 @@ class Page:
                 ["evod", f"version {about['version']}, commit {about['commit']}"],
                 ["date", about["date"]],
                 ["compared with", ", ".join(f"{name} {version}" for name, version in about["packages"].items())],
-                ["load", f"{load['load_before']} before the start; other programs kept {load['others_cores']} cores busy "
+                ["load", f"{load['load_before']} before the start; other programs kept {load['others_cores']} cores "
+                         "busy "
                          "during the measurements"],
                 ["duration", f"{load['minutes']} minutes, {about['repeats']} runs of each program" +
                          (", **with --quick**" if about["quick"] else "") +
-                         (", **all other sections are older than " + ", ".join(about["only"]) + "**" if "only" in about else "")]]
+                         (", **all other sections are older than " + ", ".join(about["only"]) + "**" if "only" in about
+                          else "")]]
         return table(["", ""], rows)
 
     def repeats(self):
@@ -119,7 +121,8 @@ class Page:
             return minus(f"{text} ({100 * (row[key] / evod[key] - 1):+.1f} %)")
         keys = ("food_per_organism_s", "poison_per_organism_s", "speed_mean_px_s", "seeing_food_share", "deaths_share",
                 "organism_ticks")
-        return table(["", "food eaten per organism and s", "poison eaten", "mean speed, px/s", "share that perceives food",
+        return table(["", "food eaten per organism and s", "poison eaten", "mean speed, px/s",
+                      "share that perceives food",
                       "share that dies", "organism-ticks"],
                      [[program_names[row["program"]], *(beside(row, key) for key in keys)] for row in rows])
 
@@ -291,7 +294,8 @@ class Page:
         increase, storage = figures["viewer_rise_percent"], figures["storage"]
         rows = [
             ["from exec to the first client's Welcome, ms", with_spread(figures["start_ms"])],
-            [f"one viewer at 30 snapshots/s, {count(figures['organisms'])} organisms and {count(figures['items'])} items, full "
+            [f"one viewer at 30 snapshots/s, {count(figures['organisms'])} organisms and {count(figures['items'])} "
+             "items, full "
              "speed: increase of the simulation thread's processor time per tick", percent(increase)],
             [f"recording the run of {count(storage['organisms'])} organisms, full speed: the same increase",
              percent(storage["simulation_rise_percent"])],
@@ -328,7 +332,8 @@ class Page:
             return digits(row["decode_ms"]) if "decode_ms" in row else ""
         return table(["organisms", "codec", "bytes per snapshot", "bytes per organism", "bytes per keyframe",
                       "network thread, ms per snapshot", "numpy decodes, ms"],
-                     [[count(row["organisms"]), row["codec"], count(round(row["bytes"])), digits(row["bytes_per_organism"]),
+                     [[count(row["organisms"]), row["codec"], count(round(row["bytes"])),
+                       digits(row["bytes_per_organism"]),
                        count(round(row["keyframe_bytes"])) if row.get("keyframes") else "", digits(row["server_ms"]),
                        decoding(row)] for row in self.results["stream"]])
 
@@ -373,7 +378,8 @@ class Page:
         rows = []
         for name, figures in self.results.get("clients", {}).items():
             if "loss_percent" in figures:
-                rows.append([name.replace("_", " "), percent(figures["loss_percent"]), percent(figures["others_share_percent"])])
+                rows.append([name.replace("_", " "), percent(figures["loss_percent"]),
+                             percent(figures["others_share_percent"])])
         return table(["clients", "loss", "of which other threads"], rows)
 
     def sweeps(self):

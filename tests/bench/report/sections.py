@@ -31,7 +31,8 @@ def workload_command(bench, program, organisms, scenes, *, threads=1, islands=1,
     return [bench.program("workload_bench"), "--program", program, "--organisms", organisms, "--scenes", scenes,
             "--threads", threads, "--islands", islands, "--warm-up-ticks", warm_up_ticks, "--ticks", measured_ticks,
             "--least-s", 0.1 if bench.quick else 0.5, *(["--spatial-order"] if spatial_order else []),
-            *(["--instructions", instructions] if instructions else []), *(["--steering", steering] if steering else [])]
+            *(["--instructions", instructions] if instructions else []),
+            *(["--steering", steering] if steering else [])]
 
 
 def engines_of(bench):
@@ -174,15 +175,18 @@ def instructions(bench):
 
 
 def drawing(bench):
-    """Milliseconds of the drawing thread per frame, by number of organisms, drawn in software under Xvfb: with OpenGL when the
-    whole island is visible, and without it for a frame with a new snapshot, at the slower of two zooms; in the slower skin."""
+    """Milliseconds of the drawing thread per frame, by number of organisms, drawn in software under Xvfb: with OpenGL
+    when the whole island is visible, and without it for a frame with a new snapshot, at the slower of two zooms; in the
+    slower skin."""
     if not bench.program("viewer_frame_bench").exists():
         return []
     run = subprocess.run([bench.root / "tests/system/viewer/under_xvfb.sh", bench.program("viewer_frame_bench"),
                           "--benchmark_format=json",
-                          "--benchmark_filter=zoom:1/new_snapshot:0/driver:1$|new_snapshot:1/driver:0$"], capture_output=True, text=True)
+                          "--benchmark_filter=zoom:1/new_snapshot:0/driver:1$|new_snapshot:1/driver:0$"],
+                         capture_output=True, text=True)
     if run.returncode != 0 or not run.stdout.startswith("{"):
-        print(f"scripts/benchmark: viewer_frame_bench did not run: {run.stdout[:200]}{run.stderr[-200:]}", file=sys.stderr)
+        print(f"scripts/benchmark: viewer_frame_bench did not run: {run.stdout[:200]}{run.stderr[-200:]}",
+              file=sys.stderr)
         return []
     rows = {}
     for entry in json.loads(run.stdout)["benchmarks"]:
@@ -260,15 +264,18 @@ def whole_program(bench):
              f"population_size={organisms}", "--set", "generation_s=1"]
     networks = evod_run(bench, *large, "--set", "controller=network", "--set", "brain_hidden=8")
     return {"default": programs.merged(default, tuple(default[0])),
-            "large": evod_run(bench, *large) | {"organisms": organisms}, "networks": networks | {"organisms": organisms},
+            "large": evod_run(bench, *large) | {"organisms": organisms},
+            "networks": networks | {"organisms": organisms},
             "disk_bytes": {name: bench.program(name).stat().st_size for name in ("evod", "evoctl", "evoview")
                            if bench.program(name).exists()}}
 
 
 everything = {"machine": machine_roofs, "workload": workload, "islands": islands, "densities": densities,
-              "agreement": agreement, "networks": networks, "instruction_sets": instruction_sets, "instructions": instructions,
+              "agreement": agreement, "networks": networks, "instruction_sets": instruction_sets,
+              "instructions": instructions,
               "phases": phases, "genetic": genetic, "breeding": breeding, "runs": whole_program,
-              "server": server, "clients": clients, "run_files": run_files, "stream": stream, "sweeps": sweeps, "package": package, "drawing": drawing}
+              "server": server, "clients": clients, "run_files": run_files, "stream": stream, "sweeps": sweeps,
+              "package": package, "drawing": drawing}
 
 
 def columns():

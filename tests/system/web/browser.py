@@ -1,7 +1,7 @@
 """A headless Chromium that shows the page of a server, through Debian's Selenium, and what the page knows, for tests.
 
-The page offers its objects as `evod` for tests (client/web/src/page/main.ts): evod.server is the connection, evod.app the
-page. Scripts here read them; what a user does is done by clicks, keys and touches.
+The page offers its objects as `evod` for tests (client/web/src/page/main.ts): evod.server is the connection, evod.app
+the page. Scripts here read them; what a user does is done by clicks, keys and touches.
 """
 import atexit
 import base64
@@ -27,7 +27,8 @@ WAIT_S = 300  # for one step of the browser, on a machine that is busy with othe
 class Browser:
     def __init__(self, *arguments):
         options = webdriver.ChromeOptions()
-        for argument in ("--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage",
+        for argument in ("--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+                         "--disable-dev-shm-usage",
                          "--disable-background-networking", "--disable-component-update", "--no-first-run",
                          "--force-device-scale-factor=1", f"--window-size={WIDTH},{HEIGHT}", *arguments):
             options.add_argument(argument)
@@ -49,7 +50,8 @@ class Browser:
         return self.driver.execute_cdp_cmd(method, parameters)
 
     def resize(self, width, height):
-        """Sets the size of the page, in CSS pixels, and that the user prefers a dark page. Both hold for the present tab."""
+        """Sets the size of the page, in CSS pixels, and that the user prefers a dark page. Both hold for the present
+        tab."""
         self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.cdp("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
 
@@ -73,8 +75,8 @@ class Browser:
         return self.run(f"return {expression}", *arguments)
 
     def result(self, expression, *arguments):
-        """The result of a promise as a dictionary: {"value": …}, or {"message": …, "code": …} if it was rejected. Whole numbers
-        beyond 2^53 become text, typed arrays lists."""
+        """The result of a promise as a dictionary: {"value": …}, or {"message": …, "code": …} if it was rejected. Whole
+        numbers beyond 2^53 become text, typed arrays lists."""
         return json.loads(self.driver.execute_async_script(f"""
             const done = arguments[arguments.length - 1];
             const plain = (key, value) => typeof value === "bigint" ? String(value)
@@ -106,7 +108,8 @@ class Browser:
     def wait_for_text(self, text, css="body"):
         """Waits until an element that can be seen contains the text."""
         self.wait("""[...document.querySelectorAll(arguments[1])]
-                      .some((e) => e.checkVisibility() && e.innerText.includes(arguments[0]))""", f"the text {text!r}", text, css)
+                      .some((e) => e.checkVisibility() && e.innerText.includes(arguments[0]))""",
+                   f"the text {text!r}", text, css)
 
     def text(self, css="body"):
         return self.value("document.querySelector(arguments[0])?.innerText", css)
@@ -116,7 +119,8 @@ class Browser:
         return self.result("evod.app.world().snapshot")["value"]
 
     def columns(self):
-        """The entities of the newest snapshot, as the worker has decoded it: {"organisms": {"id": […], …}, …}, in 1/16 px."""
+        """The entities of the newest snapshot, as the worker has decoded it: {"organisms": {"id": […], …}, …}, in 1/16
+        px."""
         return self.result("evod.server.columns(0)")["value"]
 
     def figures(self):
@@ -130,7 +134,8 @@ class Browser:
         """The addresses that the page has requested since the last call."""
         messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         return [message["params"]["request"]["url"] if "request" in message["params"] else message["params"]["url"]
-                for message in messages if message["method"] in ("Network.requestWillBeSent", "Network.webSocketCreated")]
+                for message in messages if message["method"] in ("Network.requestWillBeSent",
+                                                                 "Network.webSocketCreated")]
 
     # ---- what a user does ----
 
@@ -139,7 +144,8 @@ class Browser:
 
     def button(self, label, within="body"):
         """The button with this text or name that can be seen."""
-        found = self.value("""[...document.querySelectorAll(`${arguments[1]} button`)].find((e) => e.checkVisibility() &&
+        found = self.value(
+            """[...document.querySelectorAll(`${arguments[1]} button`)].find((e) => e.checkVisibility() &&
             (e.textContent === arguments[0] || e.getAttribute("aria-label") === arguments[0]))""", label, within)
         assert found is not None, f"no button {label!r} in {self.text(within)!r}"
         return found
@@ -184,9 +190,7 @@ class Browser:
 
     def set_camera(self, x_px, y_px, zoom):
         """Shows the island at this scale, which a user can only come near with the wheel."""
-        self.run("""const pane = evod.app.area().pane;
-            pane.camera = { x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] };
-            evod.server.post({ kind: "camera", pane: 0, camera: pane.camera });""", x_px, y_px, zoom)
+        self.run("evod.app.area().pane.view.set({ x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] })", x_px, y_px, zoom)
 
     def canvas(self):
         """The place of the canvas: its left, top, width and height in CSS pixels."""
@@ -199,6 +203,11 @@ class Browser:
         shot = self.cdp("Page.captureScreenshot", format="png", optimizeForSpeed=True,
                         clip=dict(x=left, y=top, width=width, height=height, scale=1))
         return png.decode(base64.b64decode(shot["data"]))
+
+    def click_at(self, x, y):
+        """Clicks on a point of the page with the mouse."""
+        for kind in ("mousePressed", "mouseReleased"):
+            self.cdp("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
     def tap(self, x, y):
         """Touches a point of the page for a moment."""

@@ -5,7 +5,8 @@ import re
 def tokens(sheet, selector):
     """The custom properties that are colours, of the first rule with this selector: {"--bg": (11, 12, 22), …}."""
     rule = re.search(re.escape(selector) + r"\s*\{(.*?)\}", sheet, re.S)[1]
-    return {name: tuple(bytes.fromhex(colour)) for name, colour in re.findall(r"(--[\w-]+):\s*#([0-9a-fA-F]{6})\b", rule)}
+    return {name: tuple(bytes.fromhex(colour)) for name, colour in re.findall(r"(--[\w-]+):\s*#([0-9a-fA-F]{6})\b",
+                                                                              rule)}
 
 
 def luminance(colour):

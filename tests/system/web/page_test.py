@@ -1,9 +1,11 @@
-"""The page in a real Chromium against a real evod: what it shows is what the server says, and what it does happens once.
+"""The page in a real Chromium against a real evod: what it shows is what the server says, and what it does happens
+once.
 
-EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes; EVOVIEW, if it is set, the viewer. Each class
-below is one subject, and one test of ctest, with a browser of its own. Waits are for conditions, as waiting.py describes;
-nothing here measures time or frames.
+EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes; EVOVIEW, if it is set, the viewer. Each
+class below is one subject, and one test of ctest, with a browser of its own. Waits are for conditions, as waiting.py
+describes; nothing here measures time or frames.
 """
+import csv
 import json
 import os
 import pathlib
@@ -77,7 +79,8 @@ class Page(Case):
         browser = self.browser
         browser.cdp("Network.setCacheDisabled", cacheDisabled=True)
         browser.open(self.page(server))
-        sizes = browser.value("""[...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource")]
+        sizes = browser.value(
+            """[...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource")]
             .map((entry) => [entry.name, entry.transferSize])""")
         self.assertLessEqual(len(sizes) + 1, REQUESTS_MAX, sizes)  # and the session
         self.assertLessEqual(sum(size for _, size in sizes), BYTES_MAX, sizes)
@@ -171,7 +174,8 @@ class Page(Case):
         def right():
             """How many centres have their colour."""
             pixels = browser.pixels()
-            return sum(covered[i] or bool((abs(pixels[y[i], x[i]].astype(int) - expected[i]) <= 3).all()) for i in range(count))
+            return sum(covered[i] or bool((abs(pixels[y[i], x[i]].astype(int) - expected[i]) <= 3).all())
+                       for i in range(count))
         self.assertLess(sum(covered), 4)
         plain.until(lambda: right() >= 0.99 * count, "the colours of the organisms", pause_s=0.2)
 
@@ -266,10 +270,12 @@ class Roles(Case):
         browser.wait_for_text("You are connected as a viewer: read-only.", ".notices")
         browser.panel("Parameters")
         browser.wait_for_text("You are connected as a viewer: read-only.", "[data-panel=parameters]")
-        enabled = "[...document.querySelectorAll('[data-panel=parameters] [data-parameter]')].filter((e) => !e.disabled)"
+        enabled = ("[...document.querySelectorAll('[data-panel=parameters] [data-parameter]')]"
+                   ".filter((e) => !e.disabled)")
         self.assertEqual(browser.value(f"{enabled}.length"), 0)
         half = {"name": "mutation_chance", "value": {"real": 0.5}}
-        for kind, fields in (("run", {"world": "default"}), ("set_parameters", {"world": "default", "parameters": [half]}),
+        for kind, fields in (("run", {"world": "default"}), ("set_parameters",
+                                                             {"world": "default", "parameters": [half]}),
                              ("delete_world", {"world": "default"}), ("shut_down", {})):
             answer = browser.request(kind, **fields)
             self.assertEqual(answer.get("code"), "CODE_PERMISSION_DENIED", answer)
@@ -332,7 +338,8 @@ class Controls(Case):
                                  f"[data-panel=parameters] .{kind}[data-parameter={name}]")
 
     def wait_enabled(self, name, enabled=True):
-        self.browser.wait("document.querySelector(arguments[0])?.disabled === arguments[1]", f"{name} enabled: {enabled}",
+        self.browser.wait("document.querySelector(arguments[0])?.disabled === arguments[1]",
+                          f"{name} enabled: {enabled}",
                           f".parameters [data-parameter={name}]", not enabled)
 
     def wait_value(self, name, text):
@@ -342,7 +349,8 @@ class Controls(Case):
 
     def changed(self, name):
         """The value of a parameter in the next event about it."""
-        event = self.control.next_event("parameters_changed", lambda event: event.parameters_changed.changed[0].name == name)
+        event = self.control.next_event("parameters_changed",
+                                        lambda event: event.parameters_changed.changed[0].name == name)
         state = event.parameters_changed.changed[0]
         value = state.pending if state.HasField("pending") else state.value
         return getattr(value, value.WhichOneof("kind"))
@@ -409,7 +417,8 @@ class Controls(Case):
         self.wait_enabled("mutation_chance")
         browser.type_into(browser.element(".parameters [type=search]"), "spawn margin")
         browser.type_into(self.field("spawn_margin_px"), "300")
-        refused = self.control.call(plain.INVALID, set_parameters=plain.set_parameters("default", spawn_margin_px=300.0)).status
+        refused = self.control.call(plain.INVALID, set_parameters=plain.set_parameters("default",
+                                                                                       spawn_margin_px=300.0)).status
         self.assertEqual(refused.violations[0].got, "300")
         browser.press("Apply")
         allowed = refused.violations[0].allowed
@@ -460,13 +469,16 @@ class Past(Case):
     def over_tcp(self, generation, tick):
         """The state hash in a replay of a TCP client."""
         viewer = self.client(self.served)
-        past = viewer.call(open_replay=c.OpenReplay(world="default", at=c.RunMoment(generation=generation, tick=tick))).world
+        past = viewer.call(open_replay=c.OpenReplay(world="default",
+                                                    at=c.RunMoment(generation=generation, tick=tick))).world
         viewer.call(close_replay=c.CloseReplay(world=past.name))
         return past.state_hash
 
     def shown(self, generation, tick):
-        self.browser.wait("""(({ generation, generation_tick }) => generation === arguments[0] && generation_tick === arguments[1])(
-                              evod.app.world().snapshot ?? {})""", f"generation {generation}, tick {tick}", generation, tick)
+        self.browser.wait(
+            """(({ generation, generation_tick }) => generation === arguments[0] && generation_tick === arguments[1])(
+                              evod.app.world().snapshot ?? {})""", f"generation {generation}, tick {tick}", generation,
+                              tick)
         return self.browser.snapshot()
 
     def test_a_link_shows_its_moment(self):
@@ -605,7 +617,8 @@ class Connection(Case):
         finally:
             browser.driver.close()
             browser.driver.switch_to.window(first)
-        self.wait(self.served, lambda seen: seen("evod_snapshots_sent_total") > still + 5, "snapshots for the visible page")
+        self.wait(self.served, lambda seen: seen("evod_snapshots_sent_total") > still + 5,
+                  "snapshots for the visible page")
 
     def test_a_shutdown_is_announced(self):
         browser = self.browser
@@ -613,7 +626,8 @@ class Connection(Case):
         browser.wait_for_text("The server has shut down. Trying again …", ".banners")
         self.assertEqual(waiting.ended(self.served.process), 0)
         self.restart()
-        browser.wait("evod.server.state.phase === 'open' && document.querySelector('.banners').innerText === ''", "a session")
+        browser.wait("evod.server.state.phase === 'open' && document.querySelector('.banners').innerText === ''",
+                     "a session")
 
 
 class Keyboard(Case):
@@ -640,7 +654,8 @@ class Keyboard(Case):
         for _ in range(len(expected) + 5):
             browser.driver.switch_to.active_element.send_keys(Keys.TAB)
             number, visible = browser.value("""(() => {
-                const e = document.activeElement, style = getComputedStyle(e), mark = document.querySelector(".pane-focus");
+                const e = document.activeElement, style = getComputedStyle(e);
+                const mark = document.querySelector(".pane-focus");
                 const seen = style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 1;
                 const of_canvas = e.matches(".pane-canvas") && parseFloat(getComputedStyle(mark).borderTopWidth) >= 1;
                 return [e.dataset.reach ?? null, seen || of_canvas];
@@ -659,7 +674,8 @@ class Keyboard(Case):
         browser = self.browser
         switch = browser.element("input[role=switch]")
         switch.send_keys(Keys.SPACE)
-        browser.wait("evod.server.taking_part && !document.querySelector('.run-bar .run').ariaDisabled", "an enabled button")
+        browser.wait("evod.server.taking_part && !document.querySelector('.run-bar .run').ariaDisabled",
+                     "an enabled button")
         browser.element(".run-bar .run").send_keys(Keys.ENTER)
         self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, "default")
         browser.wait("evod.app.world().control.state === 'RUN_STATE_RUNNING'", "running")
@@ -667,7 +683,8 @@ class Keyboard(Case):
         paused = self.control.wait_world(lambda world: world.state == w.RUN_STATE_PAUSED, "default")
         self.shown_tick(paused.tick)
         browser.element(".pane-canvas").send_keys(".")
-        self.control.wait_world(lambda world: world.tick == paused.tick + 1 and world.state == w.RUN_STATE_PAUSED, "default")
+        self.control.wait_world(lambda world: world.tick == paused.tick + 1 and world.state == w.RUN_STATE_PAUSED,
+                                "default")
         browser.element(".pane-canvas").send_keys("?")
         browser.wait_for_text("Keys and gestures", "dialog[open]")
         browser.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
@@ -677,7 +694,8 @@ class Keyboard(Case):
         browser = self.browser
         browser.take_part()
         browser.cdp("Accessibility.enable")
-        roles = {"button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "switch", "combobox", "listbox",
+        roles = {"button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "switch", "combobox",
+                 "listbox",
                  "radio", "tab", "tabpanel", "dialog", "application", "image", "grid"}
         for title in browser.panels():
             browser.panel(title)
@@ -699,7 +717,8 @@ class Keyboard(Case):
         for theme in (":root", ":root[data-theme=light]", ":root:not([data-theme=dark])"):
             colours = contrast.tokens(sheet, theme)
             pairs = [(text, ground) for text in texts for ground in ("--bg", "--surface", "--surface-2")]
-            of_pairs = {pair: contrast.contrast(*(colours[name] for name in pair)) for pair in [*pairs, ("--accent-text", "--accent")]}
+            of_pairs = {pair: contrast.contrast(*(colours[name] for name in pair))
+                        for pair in [*pairs, ("--accent-text", "--accent")]}
             self.assertEqual({pair: of for pair, of in of_pairs.items() if of < 4.5}, {}, theme)
         self.assertAlmostEqual(contrast.contrast((255, 255, 255), (0, 0, 0)), 21)
         self.assertAlmostEqual(contrast.contrast((118, 118, 118), (255, 255, 255)), 4.54, places=2)
@@ -720,6 +739,79 @@ class Keyboard(Case):
             browser.wait_for_text(f"{organism}", "[data-panel=organism]")
 
 
+class Family(Case):
+    def setUp(self):
+        super().setUp()
+        self.served = self.start()
+        self.control = self.client(self.served)
+        self.control.run_to(900)
+        self.browser.open(self.page(self.served))
+        self.shown_tick(900)
+        self.browser.panel("Family tree")
+        self.choose("What to show", "whole generation")
+        self.browser.wait_for_text("organisms, ", ".family")
+
+    def choose(self, label, text):
+        find = f"[...document.querySelectorAll('.family select[aria-label=\"{label}\"] option')].find((o) => o.text === arguments[0])"
+        self.browser.wait(find, text, text)
+        self.browser.value(find, text).click()
+
+    def lineage(self):
+        """The parents of each organism, which is (generation, id)."""
+        part = self.control.call(export_run=c.ExportRun(world="default", table=c.RUN_TABLE_LINEAGE, format=c.TEXT_FORMAT_CSV))
+        text = part.export_part.text
+        while not part.export_part.last:
+            part = self.control.call(continue_export=c.ContinueExport(export_id=part.export_part.export_id))
+            text += part.export_part.text
+        rows = list(csv.DictReader(text.decode().splitlines()))
+        return {(int(row["generation"]), int(row["organism"])): {
+            (int(row["generation"]) - 1, int(row[parent])) for parent in ("parent_first", "parent_second") if row[parent]}
+            for row in rows}
+
+    def common(self, parents, organisms):
+        """The most recent common ancestors of organisms of one generation."""
+        ancestors = [{one} for one in organisms]
+        while ancestors[0]:
+            ancestors = [set().union(*(parents[one] for one in of)) for of in ancestors]
+            if common := set.intersection(*ancestors):
+                return common
+        return set()
+
+    def test_a_generation_and_its_common_ancestors(self):
+        browser, parents = self.browser, self.lineage()
+        last = max(generation for generation, _ in parents)
+        common = self.common(parents, [one for one in parents if one[0] == last])
+        text = browser.wait("document.querySelector('.family-sentence').textContent", "the sentence")
+        if common:
+            self.assertIn(f"of generation {min(common)[0]}, ", text)
+            for _, organism in sorted(common)[:2]:
+                self.assertRegex(text, rf"\b{organism}\b")
+        else:
+            self.assertIn("have no common ancestor since generation 1", text)
+        browser.click(browser.element(".family summary"))
+        browser.wait(f"document.querySelectorAll('.family tbody tr').length === {SMALL['population_size']}", "the table")
+        self.assertEqual(browser.text(".family details [role=status]"), "Rows 1 to 30 of 30")
+
+        drawing = browser.element(".family-drawing")
+        browser.run("arguments[0].focus()", drawing)
+        read = "Number(/Organism (\\d+) of generation/.exec(document.querySelector('.family-note').textContent)?.[1] ?? -1)"
+        one = browser.value(read)
+        drawing.send_keys("m", Keys.END)
+        other = browser.value(read)
+        drawing.send_keys("m")
+        browser.wait_for_text(f"A: organism {one} of generation {last}. B: organism {other} of generation {last}.", ".family-marks")
+        common = self.common(parents, [(last, one), (last, other)])
+        if common:
+            browser.wait_for_text(f"of generation {min(common)[0]}.", ".family-marks")
+
+        drawing.send_keys(Keys.ARROW_UP)
+        parent = browser.value(read)
+        self.assertIn((last - 1, parent), parents[last, other])
+        drawing.send_keys(Keys.ENTER)
+        browser.wait("evod.app.world().is_replay && evod.app.world().snapshot.generation === arguments[0]", "the past", last - 1)
+        browser.wait("evod.app.world().selection.id === arguments[0]", f"organism {parent} selected", parent)
+
+
 @unittest.skipUnless("EVOVIEW" in os.environ, "evoview is not built")
 class SamePlace(Case):
     """evoview and the page draw the same moment of a world."""
@@ -730,7 +822,8 @@ class SamePlace(Case):
         control.run_to(120)
         file = pathlib.Path(self.folder) / "evoview.png"
         under_xvfb = HERE.parent / "viewer" / "under_xvfb.sh"
-        done = waiting.run([str(under_xvfb), os.environ["EVOVIEW"], "--server", f"127.0.0.1:{server.port}", "--skin", "classic",
+        done = waiting.run([str(under_xvfb), os.environ["EVOVIEW"], "--server", f"127.0.0.1:{server.port}", "--skin",
+                            "classic",
                             "--size", "1280x720", "--screenshot", str(file), "--at-tick", "120", "--timeout", "600"],
                            capture_output=True, text=True)
         if done.returncode == 77:
@@ -753,7 +846,8 @@ class SamePlace(Case):
 
     @staticmethod
     def centres(pixels, x, y, radius):
-        """Where the rings are of the organisms far from others, in px of the island. None: this is not the classic skin."""
+        """Where the rings are of the organisms far from others, in px of the island. None: this is not the classic
+        skin."""
         pixels = pixels.astype(float)
         ground, ring = numpy.array([204.0] * 3), numpy.array([104.0, 22, 148])
         inside = (pixels == ground).all(axis=2)

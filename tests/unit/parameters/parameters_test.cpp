@@ -50,6 +50,21 @@ TEST(ParameterRegistry, HasEachNameOnce) {
     EXPECT_EQ(find_parameter(""), nullptr);
 }
 
+TEST(ParameterRegistry, HasEachTopicOnce) {
+    std::set<std::string_view> topics;
+    std::string_view last;
+    std::size_t most_used_count = 0;
+    for (const ParameterDescription& parameter : parameter_registry()) {
+        ASSERT_FALSE(parameter.topic.empty()) << parameter.name;
+        EXPECT_TRUE(parameter.topic == last || topics.insert(parameter.topic).second)
+            << parameter.name << ": parameters of a topic are neighbours";
+        last = parameter.topic;
+        most_used_count += parameter.is_most_used ? 1 : 0;
+    }
+    EXPECT_EQ(topics.size(), 16u);
+    EXPECT_EQ(most_used_count, 7u) << "a name in the list of most used parameters does not exist";
+}
+
 TEST(ParameterRegistry, AcceptsEveryDefaultAndTheDefaultsTogether) {
     std::vector<Assignment> all;
     for (const ParameterDescription& description : parameter_registry()) {

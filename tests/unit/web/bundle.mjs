@@ -16,7 +16,7 @@ export async function bundle(...modules) {
   const files = modules.flatMap((module) => module.includes("/") ? [module]
     : readdirSync(path.join(sources, module)).map((file) => `${module}/${file.replace(/\.ts$/, "")}`));
   const out = path.join(made, `${modules.join("+").replaceAll("/", ".")}.mjs`);
-  execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--log-level=warning", `--outfile=${out}`],
+  execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--loader:.glsl=text", "--log-level=warning", `--outfile=${out}`],
     { cwd: sources, input: files.map((file) => `export * from "./${file}";\n`).join("") });
   return import(out);
 }

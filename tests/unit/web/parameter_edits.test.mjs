@@ -26,10 +26,10 @@ function accepted(edits, revision, ...states) {
   return edits.answered({ set: { revision, parameters: states } });
 }
 
-test("groups follow the registry, unknown ones join the group before", () => {
-  const groups = rules.grouped([{ name: "fitness" }, { name: "new_one" }, { name: "food_count" }]);
+test("groups are the topics of the server", () => {
+  const groups = rules.grouped([{ name: "fitness", topic: "Experiment" }, { name: "fitness_per_food", topic: "Experiment" }, { name: "food_count", topic: "Food and poison" }]);
   assert.deepEqual(groups, [{ title: "Experiment", members: [0, 1] }, { title: "Food and poison", members: [2] }]);
-  assert.deepEqual(rules.most_used(registry).members, [2, 0, 1]);
+  assert.deepEqual(rules.most_used([{ name: "a" }, { name: "b", is_most_used: true }]).members, [1]);
 });
 
 test("the search finds words anywhere", () => {

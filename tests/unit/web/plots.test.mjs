@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text");
+const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv", "plots/motion");
 const shown = { min: 0, max: 100 };
 
 test("ticks are round and inside the range", () => {
@@ -173,10 +173,14 @@ function subject(name, gene_names, rows) {
   return { table, island: null, name, gene_names, changes: [] };
 }
 
+function figure(quantity, subject, request = {}) {
+  return plots.figure_of({ quantity, subject, other: null, genes: [], gene: "", window: 1, ...request });
+}
+
 test("every line differs from the others in colour, dash or thickness", () => {
   const names = Array.from({ length: 12 }, (_, i) => `g${i}`);
   const one = subject("a", names, [{ generation: 1, genes: names.map(() => ({ mean: 1 })) }]);
-  const { series } = plots.figure_of("Genes", one, null, names, "", 10);
+  const { series } = figure("genes", one, { genes: names, window: 10 });
   assert.equal(series.length, 12);
   assert.equal(new Set(series.map(({ colour, dash, thickness }) => JSON.stringify([colour, dash, thickness]))).size, 12);
   assert.equal(new Set(series.map(({ dash, thickness }) => JSON.stringify([dash, thickness]))).size, 12, "without colours, too");
@@ -185,7 +189,7 @@ test("every line differs from the others in colour, dash or thickness", () => {
 test("the compared history is dashed, and finds genes by their names", () => {
   const one = subject("a", ["x", "y"], [{ generation: 1, genes: [{ mean: 1 }, { mean: 2 }] }]);
   const two = subject("b", ["y"], [{ generation: 1, genes: [{ mean: 5 }] }]);
-  const { series, solid, dashed } = plots.figure_of("Genes", one, two, ["x", "y"], "", 1);
+  const { series, solid, dashed } = figure("genes", one, { other: two, genes: ["x", "y"] });
   assert.deepEqual(series.map(({ name, y }) => [name, ...y]), [["x", 1], ["y", 2], ["y, b", 5]]);
   assert.deepEqual([solid, dashed], ["a", "b"]);
   assert.deepEqual(series.map(({ dash }) => dash.length > 0), [false, false, true]);
@@ -193,14 +197,14 @@ test("the compared history is dashed, and finds genes by their names", () => {
 
 test("the band stays between the worst and the best", () => {
   const one = subject("a", [], [{ generation: 1, fitness_best: 12, fitness_mean: 10, fitness_worst: 1, fitness_deviation: 20 }]);
-  const band = plots.figure_of("Fitness", one, null, [], "", 1).series.find(({ kind }) => kind === "band");
+  const band = figure("fitness", one).series.find(({ kind }) => kind === "band");
   assert.deepEqual([band.low[0], band.y[0]], [1, 12]);
 });
 
 test("selection of a gene is shown with its causes", () => {
   const account = { selection: 1, transmission: -0.25, change: 0.75 };
   const one = subject("a", ["x"], [{ generation: 1, genes: [{ mean: 1 }] }, { generation: 2, genes: [{ mean: 1.75, account }] }]);
-  const { series } = plots.figure_of("Selection", one, null, ["x"], "x", 1);
+  const { series } = figure("selection", one, { genes: ["x"], gene: "x" });
   assert.deepEqual(series.map(({ name, y }) => [name, y[1]]), [["change", 0.75], ["selection", 1], ["transmission", -0.25], ["migration", 0]]);
   assert.ok(Number.isNaN(series[0].y[0]));
 });
@@ -208,8 +212,8 @@ test("selection of a gene is shown with its causes", () => {
 test("the most changed genes come first", () => {
   const names = ["a", "b", "c"];
   const one = subject("w", names, [{ generation: 1, genes: [{ mean: 1 }, { mean: 1 }, { mean: 1 }] }, { generation: 2, genes: [{ mean: 2 }, { mean: 1 }, { mean: -9 }] }]);
-  assert.deepEqual(plots.most_changed("Genes", one, names, 2), ["c", "a"]);
-  assert.deepEqual(plots.most_changed("Genes", one, names, 3), names);
+  assert.deepEqual(plots.most_changed("genes", one, names, 2), ["c", "a"]);
+  assert.deepEqual(plots.most_changed("genes", one, names, 3), names);
 });
 
 test("rare extinctions are marked", () => {
@@ -227,19 +231,66 @@ test("a change of parameters has evoview's text", () => {
 
 // ---- CSV ----
 
+test("quoted cells keep commas, quotes and line breaks", () => {
+  const cells = ["plain", 'a,"b"', "two\nlines", ""];
+  assert.equal(plots.csv_line(cells), 'plain,"a,""b""","two\nlines",');
+  assert.deepEqual(plots.csv_records(`# made by evod\r\n${plots.csv_line(cells)}\r\n\n"",x`),
+                   [{ line: 2, cells }, { line: 5, cells: ["", "x"] }]);
+  assert.deepEqual({ ...plots.csv_records('a\n"b\nc') }, { line: 2, wrong: "open quote" });
+  assert.deepEqual({ ...plots.csv_records('"a"b') }, { line: 1, wrong: "text after quote" });
+});
+
 test("a saved history is read again", () => {
   const account = { selection: 1, transmission: 2, migration: 0, change: 3 };
   const rows = [statistics(1, 0, { genes: [{ mean: 1.5, deviation: 0.25, min: 1, max: 2 }] }), statistics(2, 0, { genes: [{ mean: 2, deviation: 0, min: 2, max: 2, account }] })];
-  const read = plots.read_history_csv(plots.history_csv(rows, ["speed"]));
-  assert.deepEqual(read.gene_names, ["speed"]);
-  assert.deepEqual(read.history.map((one) => [one.generation, one.fitness_best, one.organism_count]), [[1, 1, 10], [2, 2, 10]]);
-  assert.deepEqual(read.history[1].genes[0], { mean: 2, deviation: 0, min: 2, max: 2, account });
-  assert.equal(read.history[0].genes[0].account, undefined);
+  const { gene_names, runs: [run, ...others] } = plots.read_history_csv(plots.history_csv(rows, ['turn,"left"']));
+  assert.deepEqual([gene_names, run.name, others], [['turn,"left"'], "", []]);
+  assert.deepEqual(run.history.map((one) => [one.generation, one.fitness_best, one.organism_count]), [[1, 1, 10], [2, 2, 10]]);
+  assert.deepEqual(run.history[1].genes[0], { mean: 2, deviation: 0, min: 2, max: 2, account });
+  assert.equal(run.history[0].genes[0].account, undefined);
 });
 
-test("a wrong table names its line", () => {
+test("the runs of a sweep are distinguished", () => {
+  const [heading, first, second] = plots.history_csv([statistics(1, 0), statistics(2, 0)], []).trimEnd().split("\n");
+  const lines = [`cell,replicate,seed,selection,${heading}`, `0,0,7,random,${second}`, `0,0,7,random,${first}`, `1,0,7,roulette,${first}`];
+  const { runs } = plots.read_history_csv(`# evod sweep: …\n${lines.join("\n")}\n`);
+  assert.deepEqual(runs.map(({ name, history }) => [name, ...history.map((one) => one.generation)]),
+                   [["selection random", 1, 2], ["selection roulette", 1]]);
+  assert.match(plots.read_history_csv([...lines, lines[3]].join("\n")), /^line 5: generation 1 of island 0 occurs twice; allowed: once, or once per run /);
+});
+
+test("a wrong table names its line and what is allowed", () => {
   const text = plots.history_csv([statistics(1, 0)], []);
-  assert.equal(plots.read_history_csv("a,b\n1,2\n"), "line 1: there is no column generation; the columns must be those of evoctl export --what generations");
-  assert.match(plots.read_history_csv(text.replace(/\n1,/, "\nx,")), /^line 2, generation: must be a number, not "x"$/);
+  assert.match(plots.read_history_csv("a,b\n1,2\n"), /^line 1: there is no column "generation"; allowed: tables of Save CSV, /);
+  assert.match(plots.read_history_csv(text.replace(/\n1,/, "\nx,")), /^line 2, generation: got "x", allowed: a number$/);
+  assert.match(plots.read_history_csv(text.replace(/\n1,0,/, "\n1,1.5,")), /^line 2, island: got 1.5, allowed: whole numbers from 0 to 65,535$/);
   assert.match(plots.read_history_csv(text.trimEnd() + ",9\n"), /^line 2 has 21 cells, allowed: 20, as many as the heading$/);
+  assert.match(plots.read_history_csv(text.split("\n")[0]), /^there is no row after the heading in line 1; allowed: /);
+  assert.match(plots.read_history_csv(""), /^the file contains no table; allowed: /);
+});
+
+// ---- the motion of bodies ----
+
+test("a motion of the same tick replaces the last, an earlier one begins again", () => {
+  const history = new plots.MotionHistory();
+  for (const tick of [1, 2, 2]) {
+    history.add({ tick, body_count: 10 * tick, momentum_x: 3, momentum_y: 4 });
+  }
+  const [, momentum] = plots.measures.map((measure) => plots.motion_figure(measure, history.motions));
+  assert.deepEqual([momentum.series[0].x, momentum.series[0].y], [[1, 2], [5, 5]]);
+  history.add({ body_count: 1 });
+  assert.deepEqual(history.motions, [{ body_count: 1 }]);
+  Array.from({ length: 400 }, (_, i) => history.add({ tick: i + 1 }));
+  assert.deepEqual([history.motions.length, history.motions[0].tick], [300, 101]);
+});
+
+test("a tick is judged by the bodies that move too far", () => {
+  const motion = { tick_s: 0.1, body_count: 100, generation_tick: 10, fastest_step_share: 1, fastest_px_s: 80 };
+  const judged = (too_fast_count, more = {}) => plots.judge_tick({ ...motion, too_fast_count, ...more });
+  assert.deepEqual(judged(undefined), { level: "good", sentence: "The tick is short enough: the fastest body moves 1 of its radius in a tick." });
+  assert.match(judged(29).sentence, /^The tick is short enough: only on average 2.9 of 100 bodies move further /);
+  assert.equal(judged(30).level, "nearly too long");
+  assert.equal(judged(100).level, "too long");
+  assert.match(judged(100).sentence, /Set tick_s to 0.05 or less, or max_speed_px_s to 40\.$/);
+  assert.match(judged(100, { fastest_step_share: 0.4 }).sentence, /Halve tick_s, to 0.05, or lower max_speed_px_s\.$/);
 });

@@ -316,8 +316,8 @@ test("trails keep three simulated seconds", () => {
 
 /** A renderer that draws into `scenes`. */
 function renderer_of(scenes) {
-  const renderer = new render.Renderer({},
-    { kind: "canvas2d", organisms_max: Infinity, label_height: 13, measure: () => 10, draw: (scene) => scenes.push(scene) });
+  const painter = { kind: "canvas2d", organisms_max: Infinity, label_height: 13, measure: () => 10, draw: (scene) => scenes.push(scene), close() {} };
+  const renderer = new render.Renderer({}, { painter: () => painter, fill() {}, close() {} });
   renderer.resize(100, 100, 1);
   return renderer;
 }
@@ -332,13 +332,13 @@ test("large islands have traces where the camera is near", () => {
     const { trails, flashes } = scenes.at(-1);
     return { lines: trails.segments.reduce((sum, segment) => sum + segment.count, 0), flashes: flashes.length };
   };
-  renderer.set_camera({ x_px: 500, y_px: 500, zoom: 1 });
+  renderer.change({ camera: { x_px: 500, y_px: 500, zoom: 1 } });
   show(0); // the camera is limited to the island, whose size is not known before
   show(15);
   assert.deepEqual(show(30), { lines: 20 * 20, flashes: 1 }); // the region of 200 px around the visible 100 px
-  renderer.set_camera({ x_px: 500, y_px: 500, zoom: 0.1 });
+  renderer.change({ camera: { x_px: 500, y_px: 500, zoom: 0.1 } });
   assert.deepEqual(show(45), { lines: 0, flashes: 0 });
-  renderer.set_camera({ x_px: 500, y_px: 500, zoom: 1 });
+  renderer.change({ camera: { x_px: 500, y_px: 500, zoom: 1 } });
   show(60);
   assert.deepEqual(show(75, { tile_px: 512 }), { lines: 0, flashes: 0 }); // a view would not contain so many
 });
@@ -358,4 +358,56 @@ test("the streamed region is kept during small movements", () => {
   assert.notEqual(region.update({ ...camera, x_px: 1300 }, canvas, "DETAIL_FULL", 1000), null);
   assert.equal(region.update({ ...camera, x_px: 100 }, canvas, "DETAIL_FULL", 1100), null); // at most every 200 ms
   assert.notEqual(region.update({ ...camera, x_px: 100 }, canvas, "DETAIL_DOTS", 1300), null);
+});
+
+test("a linked view shows the same part of its island", () => {
+  const camera = { x_px: 500, y_px: 250, zoom: 2 };
+  assert.deepEqual(render.same_part(camera, island, island, canvas), camera);
+  const larger = { width: 2 * island.width, height: 2 * island.height };
+  assert.deepEqual(render.same_part(camera, island, larger, canvas), { x_px: 1000, y_px: 500, zoom: 1 });
+  const back = render.same_part(render.same_part(camera, island, larger, canvas), larger, island, canvas);
+  assert.deepEqual(back, camera);
+});
+
+test("tiles are as large as the canvas allows", () => {
+  const size = { width: 900, height: 600 };
+  for (const count of [2, 3, 16, 64, 256]) {
+    const places = render.tile_places(size, count, 1.6);
+    assert.equal(places.length, count);
+    for (const [i, { left, top, width, height }] of places.entries()) {
+      assert.ok(left >= 0 && top >= 0 && left + width <= size.width && top + height <= size.height, `${count}: ${i}`);
+      for (const other of places.slice(0, i)) { // no two overlap
+        assert.ok(left >= other.left + other.width || other.left >= left + width || top >= other.top + other.height);
+      }
+    }
+  }
+  assert.deepEqual(render.tile_places(size, 2, 2).map(({ top }) => top), [6, 303]); // wide islands are below each other
+  assert.deepEqual(render.tile_places(size, 2, 0.5).map(({ top }) => top), [6, 6]);
+  assert.deepEqual([1, 16, 64].map((count) => render.tile_rate_hz(30, count)), [30, 30, 7.5]);
+});
+
+test("each tile draws its own island", () => {
+  const scenes = [], renderer = renderer_of(scenes);
+  const show = (island_index, info) => renderer.add(snapshot({ island: island_index, island_count: 4, ...info }, [[island_index, 160, 160]]), 0);
+  const drawn = () => {
+    scenes.length = 0;
+    renderer.draw(0);
+    return scenes.map(({ at, place }) => [at.latest.info?.island ?? null, place.left, place.is_tile]);
+  };
+  show(2);
+  assert.deepEqual(drawn(), [[2, 0, false]]);
+  renderer.change({ selected: 2, camera: { x_px: 5, y_px: 5, zoom: 8 } });
+  renderer.show_islands(4, 2);
+  for (const index of [0, 1, 3]) {
+    show(index);
+  }
+  const lefts = drawn().map(([, left]) => left);
+  assert.deepEqual(drawn().map(([index]) => index), [0, 1, 2, 3]);
+  assert.equal(new Set(scenes.map(({ place }) => `${place.left} ${place.top}`)).size, 4);
+  assert.deepEqual(scenes.map(({ selected }) => selected), [-1, -1, 0, -1]);
+  assert.ok(lefts.every((left) => left > 0));
+  renderer.choose(3);
+  assert.equal(renderer.view.island.at.latest.info.island, 3);
+  renderer.show_islands(0, 3);
+  assert.deepEqual(drawn(), [[3, 0, false]]); // its snapshot stays
 });

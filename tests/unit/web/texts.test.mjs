@@ -1,5 +1,6 @@
 // Numbers and sentences of the page: the same as those of evoview (tests/unit/viewer/text, tests/unit/viewer/world).
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
@@ -42,16 +43,13 @@ test("a number of a field is checked against its range", () => {
   }
 });
 
-test("a refusal is a sentence that names each fact once", () => {
-  const refused = (message, ...violations) => page.refusal_text({ message, violations });
-  assert.equal(refused("there is no such island", { field: "subscribe_snapshots.island", got: "9", allowed: "0 to 7" }),
-               "There is no such island (9); allowed: 0 to 7");
-  const name = { field: "fork_world.name", got: "a b", allowed: "1 to 64 letters" };
-  assert.equal(refused('fork_world.name must be 1 to 64 letters, not "a b"', name), 'Name must be 1 to 64 letters, not "a b"');
-  assert.equal(refused("the run has no such tick: allowed: 193 in generation 1", { field: "open_replay.at", got: "0", allowed: "193 in generation 1" }),
-               "The run has no such tick: allowed: 193 in generation 1");
-  assert.equal(refused("2 fields are not as they must be", name, { field: "fork_world.seed", allowed: "a number" }),
-               "2 fields are not as they must be: name must be 1 to 64 letters, not a b; seed must be a number");
+test("a refusal is on one line and names fields without their paths", () => {
+  const refused = (message, ...fields) => page.refusal_text({ message, violations: fields.map((field) => ({ field })) });
+  assert.equal(refused("no such island\n  subscribe_snapshots.island: got 9, allowed 0 to 7", "subscribe_snapshots.island"),
+               "No such island: island: got 9, allowed 0 to 7");
+  assert.equal(refused('fork_world.name: got "a b", allowed 1 to 64 letters', "fork_world.name"), 'Name: got "a b", allowed 1 to 64 letters');
+  assert.equal(refused("2 fields are invalid\n  fork_world.name: got a b, allowed 1 to 64 letters\n  fork_world.seed: got x, allowed a number", "fork_world.name", "fork_world.seed"),
+               "2 fields are invalid: name: got a b, allowed 1 to 64 letters; seed: got x, allowed a number");
 });
 
 test("speeds are multiples of real time", () => {
@@ -69,8 +67,8 @@ test("the island is named only if there are several", () => {
 });
 
 test("a world may wait for the disk or for fitness", () => {
-  const storage = { state: "STORAGE_STATE_STALLED", reason: "it is full" };
-  assert.equal(page.storage_text(storage), "Worlds wait for the disk, commands are refused: it is full");
+  const storage = { state: "STORAGE_STATE_STALLED", reason: "it is full", text: "worlds wait: it is full" };
+  assert.equal(page.storage_text(storage), "Worlds wait: it is full");
   assert.equal(page.storage_text({ state: "STORAGE_STATE_KEEPS_UP" }), "");
   assert.equal(page.state_word("RUN_STATE_RUNNING", storage), "waits for the disk");
   assert.equal(page.state_word("RUN_STATE_RUNNING", null, true), "waits for fitness");
@@ -88,11 +86,24 @@ test("the description says what the organisms try to do", () => {
   assert.ok(!mild.includes("poison (") && mild.includes("They lose no health over time.") && mild.includes("minus 2.5 × the food eaten"), mild);
 });
 
-test("an event names the client that caused it", () => {
-  const by = { kind: "ACTOR_KIND_CLIENT", user: "anna", client: "evoview", address: "10.0.0.7:5" };
-  assert.deepEqual(page.event_text({ world: "a", parameters_changed: { by, changed: [{ name: "food_count", value: { count: 30 } }, { name: "selection", value: { choice: "rank" }, pending: { choice: "random" } }] } }),
-                   ["Anna: evoview 10.0.0.7:5 changed food_count to 30, selection to random", false]);
-  assert.deepEqual(page.event_text({ world: "a", world_reset: { by: { kind: "ACTOR_KIND_SCHEDULE" } } }), ["The schedule reset the world", false]);
-  assert.deepEqual(page.event_text({ world: "a", placed: { by: {}, food: [1, 2], organisms: [3] } }), ["A local client placed 2 food, 1 organism", false]);
-  assert.equal(page.event_text({ generation_finished: { statistics: [{ generation: 3, simulated_s: 40, fitness_best: 12, fitness_mean: 3.5 }] } })[1], true);
+test("an event has the sentence of the server", () => {
+  const examples = JSON.parse(readFileSync(new URL("../../../proto/vectors/events.json", import.meta.url)));
+  assert.ok(examples.length > 40);
+  for (const { event, text } of examples) {
+    assert.equal(page.event_text(event)[0], page.capitalised(text), JSON.stringify(event));
+  }
+});
+
+test("whole numbers in events may be larger than a double can hold", () => {
+  const dropped = { events_dropped: { dropped_count: (1n << 64n) - 1n } };
+  assert.equal(page.event_text(dropped)[0], "18,446,744,073,709,551,615 events were dropped: the client read too slowly");
+});
+
+test("an event that the page does not know has the text of the server", () => {
+  assert.deepEqual(page.event_text({ world: "a", text: "something new", something_new: {} }), ["something new", false]);
+});
+
+test("an event may be about the progress of the simulation", () => {
+  assert.equal(page.event_text({ generation_finished: { statistics: [{ generation: 3 }] } })[1], true);
+  assert.equal(page.event_text({ world_reset: { by: {} } })[1], false);
 });

@@ -6,16 +6,19 @@
         async for g in world.run(generations=50):
             print(g.best, g.mean)
 
-The result of connect(), local() and similar functions works with `await` and `async with`; that of World.run() and other
-streams also with `async for`. The examples in the docstrings are for a notebook or `python3 -m asyncio`, where `await` is
-allowed outside of functions.
+The result of connect(), local() and similar functions works with `await` and `async with`; that of World.run() and
+other streams also with `async for`. The examples in the docstrings are for a notebook or `python3 -m asyncio`, where
+`await` is allowed outside of functions.
 
 Threads      call everything on the event loop on which connect() or local() was awaited.
 """
+from evod.aio.connection import LocalLab, connect, local
 from evod.aio.experiments import compare, run, run_table, sweep
-from evod.aio.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
+from evod.aio.lab import Lab, Replay, World
+from evod.aio.streams import Events, Run, Snapshots
 
 __all__ = [
-    "Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare", "connect", "local", "run", "run_table",
+    "Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare", "connect", "local", "run",
+           "run_table",
     "sweep",
 ]  # fmt: skip

@@ -1,7 +1,8 @@
 """Results that work with `await`, `async with` and `async for`.
 
-`await world.run()`, `async with world.run() as run` and `async for generation in world.run()` all work: World.run() is a
-coroutine function with the decorator `opens_stream`. generate_sync.py removes the decorators from the synchronous modules.
+`await world.run()`, `async with world.run() as run` and `async for generation in world.run()` all work: World.run() is
+a coroutine function with the decorator `opens_stream`. generate_sync.py removes the decorators from the synchronous
+modules.
 """
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ import shutil
 import tempfile
 from typing import Any, Mapping, Sequence, Union
 
-from evod.aio.lab import local
+from evod.aio.connection import local
 from evod.aio.link import blocking_call
 from evod.errors import InvalidArgument, wrong_argument
 from evod.executor_sweep import ExecutorSweep, Plan, plan_command
@@ -23,7 +23,8 @@ from evod.progress import progress_bar
 from evod.run_file import RunFile
 from evod.tables import html_table, pandas, read_csv
 
-# ---- one run ----------------------------------------------------------------------------------------------------------
+# ---- one run
+# ----------------------------------------------------------------------------------------------------------
 
 
 async def run(
@@ -41,7 +42,8 @@ async def run(
     Parameters
     ----------
     experiment
-        An experiment file, or a mapping of parameter names to values. By default all parameters have their default values.
+        An experiment file, or a mapping of parameter names to values. By default all parameters have their default
+        values.
     seed
         Seed of the run, 0 to 2**64 - 1. By default the seed in the experiment file, or a random seed.
     generations
@@ -51,8 +53,8 @@ async def run(
     program
         Path of the program evod. By default the path in the environment variable EVOD, or else the evod found in PATH.
     progress
-        Whether to show a progress bar, which needs the package tqdm. By default a bar is shown on terminals and in notebooks
-        if tqdm is installed.
+        Whether to show a progress bar, which needs the package tqdm. By default a bar is shown on terminals and in
+        notebooks if tqdm is installed.
     **parameters
         Parameters that replace those of the experiment. A mapping in place of a value is a schedule, as for
         `Lab.create_world`.
@@ -60,8 +62,8 @@ async def run(
     Returns
     -------
     RunFile
-        The run: its tables are DataFrames. The file is deleted when it is closed or garbage collected; copy `RunFile.path`
-        to keep it.
+        The run: its tables are DataFrames. The file is deleted when it is closed or garbage collected; copy
+        `RunFile.path` to keep it.
 
     Raises
     ------
@@ -85,7 +87,8 @@ async def run(
             world = await lab.world()
             if generations is None:
                 now = await world.get_parameters()
-                if not (now.generation_limit or now.stagnation_limit or now.stop_at_target_fitness or now.stop_at_extinction):
+                if not (now.generation_limit or now.stagnation_limit or now.stop_at_target_fitness
+                        or now.stop_at_extinction):
                     raise _endless(None)
             with progress_bar("run", generations, progress) as advance:
                 async for generation in world.run(generations):
@@ -109,13 +112,14 @@ async def run_table(
     """Runs an experiment without a server and returns its statistics (`evod run --csv`).
 
     This function is made for tasks: it can be pickled, uses one thread by default, and does not hold Python's global
-    interpreter lock during the run. So any executor can call it, on this machine or on others: those of concurrent.futures,
-    Dask or mpi4py, for example. `evod.run` returns all tables of a run.
+    interpreter lock during the run. So any executor can call it, on this machine or on others: those of
+    concurrent.futures, Dask or mpi4py, for example. `evod.run` returns all tables of a run.
 
     Parameters
     ----------
     experiment
-        An experiment file, or a mapping of parameter names to values. By default all parameters have their default values.
+        An experiment file, or a mapping of parameter names to values. By default all parameters have their default
+        values.
     seed
         Seed of the run, 0 to 2**64 - 1. By default the seed in the experiment file, or a random seed.
     generations
@@ -158,7 +162,8 @@ async def run_table(
         return read_csv(csv.read_text(encoding="utf-8"))
 
 
-_RUN_ENDED = (0, 3, 4)  # the statuses of `evod run` if the run ended by itself: by a limit or a target, stagnation, extinction
+# the statuses of `evod run` if the run ended by itself: by a limit or a target, stagnation, extinction
+_RUN_ENDED = (0, 3, 4)
 _TERMINATION = ("generation_limit", "stagnation_limit", "stop_at_target_fitness", "stop_at_extinction")
 
 
@@ -167,7 +172,8 @@ def _endless(generations: int | None) -> InvalidArgument:
     return wrong_argument("generations", allowed, generations)
 
 
-# ---- a sweep ----------------------------------------------------------------------------------------------------------
+# ---- a sweep
+# ----------------------------------------------------------------------------------------------------------
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -200,7 +206,8 @@ class Sweep:
         return f"<sweep of {swept}: {self.cell_count} cells of {self.replicates} replicates, seed {self.seed}>"
 
     def _repr_html_(self) -> str:
-        fields = (("parameters", ", ".join(self.parameters)), ("cells", self.cell_count), ("replicates", self.replicates),
+        fields = (("parameters", ", ".join(self.parameters)), ("cells", self.cell_count),
+                  ("replicates", self.replicates),
                   ("seed", self.seed))  # fmt: skip
         return html_table((), fields, "sweep")
 
@@ -221,7 +228,8 @@ async def sweep(
     progress: bool | None = None,
     **parameters: object,
 ) -> Sweep:
-    """Runs an experiment many times with different parameters and seeds, on all cores or with an executor (`evod sweep`).
+    """Runs an experiment many times with different parameters and seeds, on all cores or with an executor (`evod
+    sweep`).
 
     Exactly one of `grid`, `list` and `latin_hypercube` is given. They have the form of the fields of a sweep file
     (docs/CLUSTER.md).
@@ -229,7 +237,8 @@ async def sweep(
     Parameters
     ----------
     experiment
-        An experiment file, or a mapping of parameter names to values. By default all parameters have their default values.
+        An experiment file, or a mapping of parameter names to values. By default all parameters have their default
+        values.
     grid
         The values of each parameter: a sequence, or ``{"from": A, "to": B, "steps": N}``. Every combination is a cell.
     list
@@ -246,9 +255,10 @@ async def sweep(
         The number of simultaneous runs. By default one for each processor.
     executor
         An executor of concurrent.futures, or of a package with the same interface, such as
-        ``distributed.Client(…).get_executor()`` or ``mpi4py.futures.MPIPoolExecutor()``. Each run is a task, which executes
-        `evod sweep --run` with one thread. The workers need this package and the same build of evod, but no shared folder. The
-        result is the same as without an executor, byte for byte. By default one process `evod sweep` executes all runs.
+        ``distributed.Client(…).get_executor()`` or ``mpi4py.futures.MPIPoolExecutor()``. Each run is a task, which
+        executes `evod sweep --run` with one thread. The workers need this package and the same build of evod, but no
+        shared folder. The result is the same as without an executor, byte for byte. By default one process `evod sweep`
+        executes all runs.
     out
         The folder for the results, in which the same call resumes an interrupted sweep. By default a temporary folder.
     program, progress, **parameters
@@ -259,21 +269,21 @@ async def sweep(
     InvalidArgument
         An argument or a parameter is not allowed. `violations` lists all of them.
     ProgramFailed
-        A run failed, or a worker of the executor was lost. The message names the cell and the replicate. The other runs are
-        cancelled; those in progress on this machine are stopped. The same call with `out` resumes the sweep.
+        A run failed, or a worker of the executor was lost. The message names the cell and the replicate. The other runs
+        are cancelled; those in progress on this machine are stopped. The same call with `out` resumes the sweep.
 
     Examples
     --------
     >>> import evod.aio
-    >>> result = await evod.aio.sweep(grid={"selection": ["random", "tournament"]}, replicates=2, seed=1, generations=20)
+    >>> methods = {"selection": ["random", "tournament"]}
+    >>> result = await evod.aio.sweep(grid=methods, replicates=2, seed=1, generations=20)
     >>> result
     <sweep of selection: 2 cells of 2 replicates, seed 1>
     >>> result.last.groupby("selection").fitness_mean.mean().round(1).to_dict()
     {'random': 54.3, 'tournament': 167.7}
     >>> import concurrent.futures
     >>> with concurrent.futures.ThreadPoolExecutor(2) as threads:
-    ...     same = await evod.aio.sweep(grid={"selection": ["random", "tournament"]}, replicates=2, seed=1, generations=20,
-    ...                                 executor=threads)
+    ...     same = await evod.aio.sweep(grid=methods, replicates=2, seed=1, generations=20, executor=threads)
     >>> same.csv == result.csv
     True
     """
@@ -281,7 +291,8 @@ async def sweep(
         allowed = "an executor of concurrent.futures or with its interface, such as client.get_executor() of Dask"
         raise wrong_argument("executor", allowed, repr(executor))
     if executor is not None and jobs is not None:
-        raise wrong_argument("jobs", "no value if an executor is given: it determines how many runs execute at a time", jobs)
+        raise wrong_argument("jobs", "no value if an executor is given: it determines how many runs execute at a time",
+                             jobs)
     given = {"grid": grid, "list": list, "latin_hypercube": latin_hypercube, "seed": seed, "generations": generations}
     whole = with_parameters(experiment, parameters)
     design: dict[str, object] = {name: value for name, value in given.items() if value is not None}
@@ -292,7 +303,8 @@ async def sweep(
         plan = Plan.of(result_in(await _output_of(plan_command(program, path))))
         with progress_bar("sweep", 1.0, progress) as advance:
             if executor is None:
-                command = [find_program(program), "sweep", path, "--json", "--out", str(results), *_option("jobs", jobs)]
+                command = [find_program(program), "sweep", path, "--json", "--out", str(results),
+                           *_option("jobs", jobs)]
                 await _output_of(Program(command, hidden=f"{path}: ", on_progress=advance))
             else:
                 text = pathlib.Path(whole).read_text(encoding="utf-8") if isinstance(whole, str) else json_text(whole)
@@ -303,7 +315,8 @@ async def sweep(
     return Sweep(len(plan.cells), len(plan.seeds), plan.seed, plan.seeds, plan.parameters, text)
 
 
-# ---- a comparison -------------------------------------------------------------------------------------------------------
+# ---- a comparison
+# -------------------------------------------------------------------------------------------------------
 
 
 @dataclasses.dataclass(frozen=True)
@@ -347,8 +360,8 @@ class Comparison:
     def fitness(self) -> Any:
         """A DataFrame with the fitness of every run and generation.
 
-        Its columns are arm (name of the world), replicate, seed, generation, fitness_mean, fitness_best, organism_count and
-        alive_count.
+        Its columns are arm (name of the world), replicate, seed, generation, fitness_mean, fitness_best, organism_count
+        and alive_count.
         """
         return read_csv(self.csv)
 
@@ -387,9 +400,9 @@ async def compare(
     Parameters
     ----------
     *experiments
-        Experiment files, or mappings of parameter names to values. A single one, or none for the default world, is compared
-        with its controls: random selection, no mutation, harmless poison and shuffled fitness. Of several, the first is
-        compared with each of the others.
+        Experiment files, or mappings of parameter names to values. A single one, or none for the default world, is
+        compared with its controls: random selection, no mutation, harmless poison and shuffled fitness. Of several, the
+        first is compared with each of the others.
     names
         The names of the worlds in the results. By default the names of the files without their extension, and
         "experiment_1", "experiment_2", … for mappings.

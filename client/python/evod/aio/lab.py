@@ -1,180 +1,35 @@
-"""Labs, worlds and streams for asyncio. evod.lab, the synchronous module, is generated from this file.
+"""Labs and worlds for asyncio. evod.lab, the synchronous module, is generated from this file.
 
 Threads      call everything on the event loop on which connect() or local() ran.
 """
 from __future__ import annotations
 
-import os
-import weakref
-from typing import Any, Callable, Iterable, Mapping, Sequence, TypeVar
+from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import numpy.typing
 
-from evod import local_server, page_link, plans, plotting, tables
+from evod import page_link, plans
 from evod.aio.attributes import ParameterAttributes
 from evod.aio.awaitable import opens, opens_stream
-from evod.aio.link import Link, blocking_call
+from evod.aio.link import Link
+from evod.aio.streams import Closing, Events, Run
+from evod.aio.world_queries import WorldQueries
 from evod.conversion import result
-from evod.core import Core
-from evod.endpoint import Endpoint, read_token, tls_context
-from evod.experiment import Experiment
-from evod.genes import GENE_NAMES, Genes
-from evod.generations import Generation, History, Life, Population
+from evod.genes import Genes
+from evod.generations import History, Life, Population
+from evod.lab_plans import LabPlans
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.results import Breeding, DamagedWorld, EntityIds, Motion, OrganismInfo, RunState, Statistics, WorldInfo
-from evod.snapshots import Snapshot
+from evod.results import DamagedWorld, EntityIds, WorldInfo
 from evod.tables import html_table
-from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2
-
-T = TypeVar("T")
+from evod.v1 import commands_pb2 as c, session_pb2
 
 
-@opens
-async def connect(
-    server: str = "localhost",
-    *,
-    token: str | None = None,
-    token_file: str | None = None,
-    tls: bool = False,
-    ca: str | None = None,
-    cert: str | None = None,
-    key: str | None = None,
-    timeout_s: float = 30.0,
-    reconnect: bool = True,
-    client_name: str = "evod for Python",
-) -> Lab:
-    """Connects to a server.
-
-    Parameters
-    ----------
-    server
-        HOST, HOST:PORT or [IPV6]:PORT; the default port is 7744.
-    token, token_file
-        The access token, or a file that contains it and that only its owner can read. If neither is given, the token is read
-        from the environment variable EVOD_TOKEN.
-    tls
-        Use TLS. The server must have a certificate that this system trusts.
-    ca
-        Use TLS, and trust the certificates in this PEM file, such as the server's own evod.crt. If it is not given, the file
-        named by the environment variable EVOD_CA is used.
-    cert, key
-        Use TLS with this client certificate and its private key, for servers that require one. Both are PEM files; one file
-        may contain both.
-    timeout_s
-        The longest time in seconds to wait for an answer, and for a server that cannot be reached. After this time, calls
-        fail. Calls for which the server must replay a run may take 20 times as long.
-    reconnect
-        Whether to reconnect after the connection was lost.
-    client_name
-        The name of this program in the server's log.
-
-    Raises
-    ------
-    NoConnection
-        No server answers at this address, or the server refuses this client.
-    DamagedData
-        The program at this address is not an evod server.
-
-    Examples
-    --------
-    >>> import evod.aio
-    >>> async with evod.aio.local() as server:  # in place of your own server
-    ...     async with evod.aio.connect(server.address) as lab:
-    ...         lab.role, [info.name for info in await lab.worlds()]
-    ('admin', ['default'])
-    """
-    endpoint = Endpoint.parse(server)
-    core = Core(token=read_token(token, token_file), client_name=client_name, server=endpoint)
-    link = Link(endpoint, core, tls_context(tls, ca, cert, key), timeout_s=timeout_s, reconnect=reconnect)
-    await link.open()
-    return Lab(link)
-
-
-@opens
-async def local(
-    *,
-    seed: int | None = None,
-    experiment: Experiment = None,
-    data: str | os.PathLike[str] | None = None,
-    speed: float | str = "max",
-    threads: int | None = None,
-    program: str | os.PathLike[str] | None = None,
-    timeout_s: float = 30.0,
-) -> LocalLab:
-    """Starts a private server at a free port and connects to it.
-
-    The server stops when the lab is closed or garbage collected, and when this program ends, even if it is killed.
-
-    Parameters
-    ----------
-    seed
-        Seed of the first world, 0 to 2**64 - 1. By default the server draws a random seed.
-    experiment
-        Parameters of the first world: an experiment file, or a mapping of names to values. By default all parameters have
-        their default values.
-    data
-        Folder for the run files. By default a temporary folder, which is deleted when the server stops.
-    speed
-        Speed of every world, including worlds, forks and replays created later: simulated seconds per second, or "max" for as
-        fast as the machine allows.
-    threads
-        Number of threads for the simulation. By default one for each processor.
-    program
-        Path of the program evod. By default the path in the environment variable EVOD, or else the evod found in PATH.
-    timeout_s
-        The same as for `connect`.
-
-    Raises
-    ------
-    FileNotFound
-        The program was not found.
-    InvalidArgument
-        An argument or a parameter of the experiment is not allowed. `violations` lists all of them.
-    ProgramFailed
-        The server did not start. The message contains the last lines of its output.
-
-    Examples
-    --------
-    >>> import evod.aio
-    >>> async with evod.aio.local(seed=42, experiment={"population_size": 50}) as lab:
-    ...     world = await lab.world()
-    ...     async for g in world.run(generations=2):
-    ...         print(g)
-    generation 1: best 337.6, mean 71.1, 25 of 50 alive
-    generation 2: best 294.4, mean 84.7, 27 of 50 alive
-    """
-    server = await blocking_call(local_server.start, seed, experiment, data, speed, threads, program)
-    try:
-        lab = await connect(server.address, token="", ca="", timeout_s=timeout_s, client_name="evod.local")
-        if data is not None:  # worlds that were already in the folder have their stored speed
-            for info in await lab.worlds():
-                world = await lab.world(info.name)
-                await world.set_speed(speed)
-    except BaseException:
-        server.stop()
-        raise
-    return LocalLab(lab._link, server, speed)
-
-
-class _Closing:
-    """Base class of objects that are closed at the end of an `async with` block."""
-
-    async def close(self) -> None:
-        raise NotImplementedError
-
-    async def __aenter__(self: T) -> T:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.close()
-
-
-class Lab(_Closing):
+class Lab(Closing):
     """A connection to a server and its worlds, returned by `connect`."""
 
     def __init__(self, link: Link) -> None:
         self._link = link
-        self._plans = plans.LabPlans(link.core)
+        self._plans = LabPlans(link.core)
 
     def __repr__(self) -> str:
         return f"<evod at {self.address}>"
@@ -247,8 +102,8 @@ class Lab(_Closing):
         return tuple(result(info) for info in await self._link.perform(plans.worlds()))
 
     async def damaged_worlds(self) -> tuple[DamagedWorld, ...]:
-        """Returns the worlds that do not run, because the server cannot restore them from their run files. Every method of
-        such a world raises `FailedPrecondition` with the reason, except `World.export` and `World.delete`."""
+        """Returns the worlds that do not run, because the server cannot restore them from their run files. Every method
+        of such a world raises `FailedPrecondition` with the reason, except `World.export` and `World.delete`."""
         return tuple(result(world) for world in await self._link.perform(plans.damaged_worlds()))
 
     async def world(self, name: str | None = None) -> World:
@@ -277,14 +132,14 @@ class Lab(_Closing):
         name
             The name of the new world: 1 to 64 letters, digits, "_" and "-". No other world may have this name.
         parameters
-            A mapping of parameter names to values. Parameters that are not given have their default values. A mapping in
-            place of a value is a schedule: {1: 0.2, 30: 0.05} sets each value at the first tick of its generation. Before
-            the first generation in the schedule the parameter has its default value.
+            A mapping of parameter names to values. Parameters that are not given have their default values. A mapping
+            in place of a value is a schedule: {1: 0.2, 30: 0.05} sets each value at the first tick of its generation.
+            Before the first generation in the schedule the parameter has its default value.
         seed
             The seed of the run, 0 to 2**64 - 1. By default the server draws a random seed.
         population
-            The genes of the first generation: one array for each island, with shape (population_size, genes) and columns in the
-            order of `WorldInfo.gene_names`. By default the server draws the genes with the seed.
+            The genes of the first generation: one array for each island, with shape (population_size, genes) and
+            columns in the order of `WorldInfo.gene_names`. By default the server draws the genes with the seed.
         speed
             The speed, as for `World.set_speed`. By default real time, or the speed given to `local`.
 
@@ -328,42 +183,17 @@ class Lab(_Closing):
         return Events(self._link, plans.EventStream(self._link.core, subscription))
 
     async def shut_down(self) -> None:
-        """Stops the server. Before it stops, it answers all requests that it has received, and writes all runs to disk."""
+        """Stops the server. Before it stops, it answers all requests that it has received, and writes all runs to
+        disk."""
         await self._request("shut_down")
 
 
-class LocalLab(Lab):
-    """A Lab with a private server, returned by `local`. Closing it stops the server."""
-
-    def __init__(self, link: Link, server: local_server.Server, speed: float | str) -> None:
-        super().__init__(link)
-        self._server = server
-        self._plans.speed_of_new_worlds = speed
-        # Worlds and streams hold references to the link. When it is garbage collected, no object can use the server any more.
-        weakref.finalize(link, server.end)
-
-    async def close(self) -> None:
-        """Closes the connection and stops the server. Waits up to 30 s until the server has written its runs."""
-        await super().close()
-        await blocking_call(self._server.stop)
-
-    @property
-    def log(self) -> str:
-        """The last 1,000 lines of the server's output."""
-        return "\n".join(self._server.lines)
-
-
-class World(ParameterAttributes):
+class World(ParameterAttributes, WorldQueries):
     """A world on a server, returned by `Lab.world` and `Lab.create_world`."""
 
     def __init__(self, lab: Lab, name: str) -> None:
-        self._lab, self._name = lab, name
-        self._link, self._plans = lab._link, lab._plans
-
-    @property
-    def name(self) -> str:
-        """The name of the world on its server."""
-        return self._name
+        super().__init__(lab._link, lab._plans, name)
+        self._lab = lab
 
     @property
     def lab(self) -> Lab:
@@ -372,9 +202,6 @@ class World(ParameterAttributes):
 
     def __repr__(self) -> str:
         return f"<world {self.name} at {self._lab.address}>"
-
-    async def _request(self, kind: str, /, **fields: Any) -> c.Response:
-        return await self._link.perform(plans.request(kind, world=self.name, **fields))
 
     async def _command(self, kind: str, /, **fields: Any) -> WorldInfo:
         info: WorldInfo = result(await self._link.perform(plans.request_world(kind, world=self.name, **fields)))
@@ -397,20 +224,22 @@ class World(ParameterAttributes):
         at_tick: int | None = None,
         **more: object,
     ) -> Parameters:
-        """Sets parameters: ``world.set(mutation_chance=0.1, selection="tournament")``. If one value is refused, sets none.
+        """Sets parameters: ``world.set(mutation_chance=0.1, selection="tournament")``. If one value is refused, sets
+        none.
 
         Parameters
         ----------
         values, **more
-            The new values by parameter name, as a mapping or as keyword arguments. Values out of range are refused before a
-            request is sent.
+            The new values by parameter name, as a mapping or as keyword arguments. Values out of range are refused
+            before a request is sent.
         dry_run
             Check the values and return the parameters as they would be after the change. Do not change anything.
         expected_revision
             The `Parameters.revision` on which the change is based. The server refuses the change if another client has
             changed parameters since that revision.
         at_generation
-            Plan the change for the first tick of this generation. `Parameters.change` of the result is the planned change.
+            Plan the change for the first tick of this generation. `Parameters.change` of the result is the planned
+            change.
         at_tick
             Plan the change for the moment after this tick, counted from the beginning of the run.
 
@@ -462,11 +291,11 @@ class World(ParameterAttributes):
         Parameters
         ----------
         food, poison
-            The positions as pairs (x, y) in px: a list of pairs, or an array of shape (count, 2). They must be inside the
-            walls and clear of crates and obstacles.
+            The positions as pairs (x, y) in px: a list of pairs, or an array of shape (count, 2). They must be inside
+            the walls and clear of crates and obstacles.
         organisms
-            Triples (x, y, genes). `genes` are numbers in the order of `WorldInfo.gene_names`, or numbers by gene name. The
-            place must also be clear of other organisms.
+            Triples (x, y, genes). `genes` are numbers in the order of `WorldInfo.gene_names`, or numbers by gene name.
+            The place must also be clear of other organisms.
         island
             The index of the island.
 
@@ -558,27 +387,28 @@ class World(ParameterAttributes):
     ) -> History:
         """Runs the world with any fitness function, and returns the ended generations.
 
-        The world must have the parameter ``fitness`` external. It then waits at the end of each generation for the fitness
-        of its organisms, for each island. With ``external_bodies`` off, organisms do not live on the islands, and evod is
-        a genetic algorithm that maximises the function. The run file contains all numbers, so the run can be repeated and
-        verified without the function.
+        The world must have the parameter ``fitness`` external. It then waits at the end of each generation for the
+        fitness of its organisms, for each island. With ``external_bodies`` off, organisms do not live on the islands,
+        and evod is a genetic algorithm that maximises the function. The run file contains all numbers, so the run can
+        be repeated and verified without the function.
 
         Parameters
         ----------
         function
-            It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and returns
-            one number for each organism: larger is better, -1e100 to 1e100.
+            It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and
+            returns one number for each organism: larger is better, -1e100 to 1e100.
         generations
-            The number of further generations, at least 1. By default until the world is paused or a termination criterion
-            ends the run.
+            The number of further generations, at least 1. By default until the world is paused or a termination
+            criterion ends the run.
 
         Raises
         ------
         FailedPrecondition
             The world computes its fitness itself.
         InvalidArgument
-            The function has returned an array of a wrong shape, or a number that is not allowed. The world waits for fitness
-            as before. It does so too if the function raises an exception, or if this program ends: any client can go on.
+            The function has returned an array of a wrong shape, or a number that is not allowed. The world waits for
+            fitness as before. It does so too if the function raises an exception, or if this program ends: any client
+            can go on.
 
         Examples
         --------
@@ -600,7 +430,8 @@ class World(ParameterAttributes):
         return await self._link.perform(plan)
 
     async def run_until_tick(self, tick: int) -> WorldInfo:
-        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the pause."""
+        """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the
+        pause."""
         return await self._command("run_until_tick", tick=tick)
 
     async def step(self, ticks: int = 1) -> WorldInfo:
@@ -636,7 +467,8 @@ class World(ParameterAttributes):
         return await self._command("set_speed", speed=plans.speed_message(speed))
 
     async def reset(self, seed: int | None = None) -> WorldInfo:
-        """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for `run`."""
+        """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for
+        `run`."""
         return await self._command("reset_world", seed=seed)
 
     async def release_lease(self) -> WorldInfo:
@@ -664,12 +496,7 @@ class World(ParameterAttributes):
         """Deletes the world from the server."""
         await self._request("delete_world")
 
-    # ---- observing ------------------------------------------------------------------------------------------------
-
-    async def info(self) -> WorldInfo:
-        """Returns the current tick, generation, run state, speed, seed and gene names."""
-        info: WorldInfo = result(await self._link.perform(plans.world_info(self.name)))
-        return info
+    # ---- links and replays ----------------------------------------------------------------------------------------
 
     async def link(
         self,
@@ -715,157 +542,6 @@ class World(ParameterAttributes):
             page_link.warn_of_other_host(self._lab.welcome, self._link.server)
         return page_link.link_of(page, info, generation, tick, island, organism, live)
 
-    async def snapshot(self, island: int = 0, *, genes: bool = False) -> Snapshot:
-        """Returns the current state of an island.
-
-        Parameters
-        ----------
-        island
-            Index of the island.
-        genes
-            Whether ``snapshot.organisms.genes`` contains the genes.
-        """
-        return await self._link.perform(self._plans.snapshot(self.name, island, genes))
-
-    @opens_stream
-    async def snapshots(
-        self,
-        rate_hz: float = 30.0,
-        *,
-        island: int | None = None,
-        genes: bool = False,
-        region: tuple[float, float, float, float] | None = None,
-        detail: str | None = None,
-        bytes_per_s_max: int | None = None,
-    ) -> Snapshots:
-        """Subscribes to snapshots. A slow reader receives fewer snapshots, never stale ones.
-
-        With `region`, `detail` or `bytes_per_s_max` each snapshot consists of tiles: see `Snapshot.tiles`.
-
-        Parameters
-        ----------
-        rate_hz
-            The largest number of snapshots per second for each island. The server may lower it: see `Snapshots.rate_hz`.
-        island
-            The index of the island to observe. By default snapshots of all islands arrive in turn.
-        genes
-            Whether ``snapshot.organisms.genes`` contains the genes. They are requested once per generation and island. If
-            the generation has ended before, they are read from the run file.
-        region
-            A rectangle, as (left, top, width, height) in px. Snapshots contain only the tiles that overlap it.
-        detail
-            The highest level of detail: "full", "dots" or "density".
-        bytes_per_s_max
-            The largest number of bytes per second that the server sends. To stay below it, the server lowers the level of
-            detail.
-
-        Examples
-        --------
-        >>> import evod.aio
-        >>> async with evod.aio.local(seed=1) as lab:
-        ...     world = await lab.world()
-        ...     async with world.snapshots() as snapshots:
-        ...         run = await world.run(generations=1)
-        ...         async for snapshot in snapshots:
-        ...             if snapshot.tick > 100:
-        ...                 break
-        >>> bool(snapshot.organisms.health.max() > 0)
-        True
-        """
-        view = plans.view_message(region, detail, bytes_per_s_max)
-        subscription = await self._link.perform(self._plans.subscribe_snapshots(self.name, island, rate_hz, view))
-        return Snapshots(self._link, plans.SnapshotStream(self._link.core, subscription, genes))
-
-    @opens_stream
-    async def events(self) -> Events:
-        """Subscribes to the events of this world that happen from now on."""
-        subscription = await self._link.perform(self._plans.subscribe_events(self.name))
-        return Events(self._link, plans.EventStream(self._link.core, subscription))
-
-    async def statistics(self) -> Statistics:
-        """Returns the live statistics of each island, and the statistics of the last generation that has ended."""
-        answer = (await self._request("get_statistics")).statistics
-        statistics: Statistics = result(answer, answer.world.gene_names)
-        return statistics
-
-    async def history(
-        self, first: int | None = None, last: int | None = None, *, island: int | None = None
-    ) -> History:
-        """Returns the ended generations whose statistics the server still stores.
-
-        Parameters
-        ----------
-        first, last
-            The first and the last generation to return; the first generation of a run is 1. By default all generations.
-        island
-            The index of an island. If it is given, the result contains only the statistics of this island.
-        """
-        return await self._link.perform(plans.history(self.name, first, last, island))
-
-    async def organism(self, organism: int, island: int = 0) -> OrganismInfo:
-        """Returns the genes, position, health, parents, next choice and neural network of the organism with this id.
-
-        Raises
-        ------
-        NotFound
-            The current generation contains no organism with this id.
-        """
-        answer = (await self._request("get_organism", island=island, organism=organism)).organism
-        info: OrganismInfo = result(answer, await self._link.perform(plans.gene_names(self.name, len(answer.genes))))
-        return info
-
-    async def population(self, island: int = 0) -> Population:
-        """Returns the genes, parents and choices of all organisms in the current generation as arrays.
-
-        Examples
-        --------
-        >>> import evod.aio
-        >>> async with evod.aio.local(seed=1) as lab:
-        ...     world = await lab.world()
-        ...     population = await world.population()
-        >>> population.genes.shape
-        (50, 6)
-        """
-        return await self._link.perform(plans.population(self.name, island))
-
-    async def breeding(
-        self,
-        island: int = 0,
-        generation: int | None = None,
-        *,
-        first_contender: int = 0,
-        first_pick: int = 0,
-        first_descendant: int = 0,
-    ) -> Breeding:
-        """Returns a record of how a generation was bred: contenders, picks, pairs, crossover points and mutations.
-
-        Parameters
-        ----------
-        island
-            Index of the island.
-        generation
-            The generation of the parents. By default the last generation that has bred.
-        first_contender, first_pick, first_descendant
-            For each list, the index of the first row to return. Use them if a population does not fit into one answer.
-        """
-        response = await self._request(
-            "get_breeding",
-            island=island,
-            generation=generation,
-            first_contender=first_contender,
-            first_pick=first_pick,
-            first_descendant=first_descendant,
-        )
-        answer = response.breeding
-        gene_count = len(answer.descendants[0].genes) if answer.descendants else len(GENE_NAMES)
-        breeding: Breeding = result(answer, await self._link.perform(plans.gene_names(self.name, gene_count)))
-        return breeding
-
-    async def motion(self, island: int = 0) -> Motion:
-        """Returns the total energy and momentum of the bodies on an island, and how much they overlap."""
-        motion: Motion = result((await self._request("get_motion", island=island)).motion)
-        return motion
-
     @opens
     async def open_replay(self, generation: int | None = None, tick: int | None = None) -> Replay:
         """Opens a replay of this world's stored run. The server must record its runs.
@@ -881,97 +557,8 @@ class World(ParameterAttributes):
         plan = self._plans.derived_world("open_replay", world=self.name, at=at)
         return Replay(self._lab, await self._link.perform(plan))
 
-    async def export(
-        self,
-        table: str,
-        format: str = "csv",
-        *,
-        generation: int | None = None,
-        of: tuple[int, int, int] | None = None,
-    ) -> str:
-        """Returns a table of the world's run file as text.
 
-        Parameters
-        ----------
-        table
-            "generations", "organisms", "lineage", "population" or "events".
-        format
-            "csv" or "jsonl".
-        generation
-            For "population": the generation to export. By default the last generation that has begun.
-        of
-            For "lineage": an organism as (generation, island, id). The table then contains only the ancestors of this
-            organism.
-        """
-        return await self._link.perform(plans.export(self.name, table, format, generation, of))
-
-    async def table(self, table: str, *, generation: int | None = None, of: tuple[int, int, int] | None = None) -> Any:
-        """Returns the table of `export` as a pandas DataFrame."""
-        return tables.read_csv(await self.export(table, generation=generation, of=of))
-
-    # ---- plots ----------------------------------------------------------------------------------------------------
-
-    async def plot(self, island: int = 0, ax: Any = None) -> Any:
-        """Plots the current state of an island with matplotlib.
-
-        Parameters
-        ----------
-        island
-            Index of the island.
-        ax
-            The axes to draw into. By default new axes are created.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-
-        Examples
-        --------
-        >>> import evod.aio
-        >>> async with evod.aio.local(seed=1) as lab:
-        ...     world = await lab.world()
-        ...     axes = await world.plot()
-        >>> axes.get_title()
-        'default, generation 1, 50 alive, 0 s'
-        """
-        return plotting.plot_island(await self.snapshot(island), ax)
-
-    async def plot_fitness(self, ax: Any = None) -> Any:
-        """Plots the fitness of all ended generations; returns the axes."""
-        return plotting.plot_fitness((await self.history()).columns(), ax)
-
-    async def plot_genes(self, ax: Any = None) -> Any:
-        """Plots the mean and the standard deviation of each gene in all ended generations; returns the axes."""
-        history = await self.history()
-        return plotting.plot_genes(history.columns(), history.gene_names, ax)
-
-    async def plot_selection(self, gene: str, ax: Any = None) -> Any:
-        """Plots how selection, transmission and migration changed the mean of a gene in each generation; returns the axes."""
-        history = await self.history()
-        return plotting.plot_selection(history.columns(), history.gene_names, gene, ax)
-
-    async def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
-        """Records snapshots of an island and returns them as a matplotlib animation. Notebooks can play it.
-
-        Parameters
-        ----------
-        count
-            The number of snapshots. The recording ends earlier if the world does not run.
-        rate_hz
-            The number of snapshots per second, both in the recording and in the animation.
-        island
-            Index of the island.
-        """
-        recorded: list[Snapshot] = []
-        async with self.snapshots(rate_hz, island=island) as snapshots:
-            async for snapshot in snapshots:
-                recorded.append(snapshot)
-                if len(recorded) >= count or snapshot.state != RunState.RUNNING:
-                    break
-        return plotting.animate(recorded, 1000 / rate_hz)
-
-
-class Replay(World, _Closing):
+class Replay(World, Closing):
     """A replay of another world's stored run, returned by `World.open_replay`.
 
     It ends with close(), or when the connection ends.
@@ -985,118 +572,3 @@ class Replay(World, _Closing):
         """Removes the replay from the server."""
         await self._link.perform(plans.close_replay(self.name))
 
-
-class _Stream(_Closing):
-    def __init__(self, link: Link, stream: Any) -> None:
-        self._link, self._stream = link, stream
-
-    async def close(self) -> None:
-        """Ends the subscription."""
-        await self._link.apply(self._stream.close)
-
-
-class Run(_Stream):
-    """The generations of a run, returned by `World.run`. Iterating it yields each generation when it ends.
-
-    Each generation is returned once, even if it ends during a reconnect. Closing a Run does not stop the world.
-    """
-
-    _stream: plans.GenerationStream
-
-    def __repr__(self) -> str:
-        info = self._stream.info
-        end = f"to {info.run_until_generation - 1}" if info.HasField("run_until_generation") else "until it is paused"
-        return f"<run of {info.name}: generations {info.generation} {end}>"
-
-    def _repr_html_(self) -> str:
-        return html_table((), (("world", self.info.name), ("began", f"generation {self.info.generation}")), repr(self)[1:-1])
-
-    @property
-    def info(self) -> WorldInfo:
-        """The state of the world when the run began."""
-        info: WorldInfo = result(self._stream.info)
-        return info
-
-    def __aiter__(self) -> Run:
-        return self
-
-    async def __anext__(self) -> Generation:
-        generation = await self._link.perform(self._stream.next())
-        if generation is None:
-            raise StopAsyncIteration
-        return generation
-
-    async def _rate(self, function: Callable[[Genes, Life], numpy.typing.ArrayLike], world: World) -> list[Generation]:
-        """Rates the organisms with a function until the end of the run, and returns the generations."""
-        generations: list[Generation] = []
-        while True:
-            step = await self._link.perform(self._stream.step())
-            if step is None:
-                return generations
-            if isinstance(step, Generation):
-                generations.append(step)
-                continue
-            for island in step.islands:
-                names = self._stream.info.gene_names
-                population = await self._link.perform(plans.population(world.name, island, names))
-                if population.generation != step.generation:
-                    break  # another client has rated this generation
-                fitness = await blocking_call(plans.rate, function, population)
-                if not await world._set_fitness(population, fitness):
-                    break
-
-    async def wait(self) -> Generation | None:
-        """Waits for the end of the run and returns the last generation; None if it was already returned before."""
-        last = None
-        async for last in self:
-            pass
-        return last
-
-
-class Snapshots(_Stream):
-    """A subscription to snapshots, returned by `World.snapshots`. Iterating it yields the snapshots.
-
-    Each step of the iteration acknowledges the previous snapshot, so that the server can send another one.
-    """
-
-    _stream: plans.SnapshotStream
-
-    def __aiter__(self) -> Snapshots:
-        return self
-
-    async def __anext__(self) -> Snapshot:
-        return await self._link.perform(self._stream.next())
-
-    @property
-    def rate_hz(self) -> float:
-        """The largest number of snapshots per second for each island: the requested rate, or the server's lower limit."""
-        return self._stream.rate_hz
-
-    async def set_view(
-        self,
-        region: tuple[float, float, float, float] | None = None,
-        detail: str | None = None,
-        bytes_per_s_max: int | None = None,
-    ) -> None:
-        """Changes the view. The subscription must have been created with one. The arguments are as for `World.snapshots`."""
-        view = plans.view_message(region, detail, bytes_per_s_max) or c.View()
-        await self._link.perform(self._stream.set_view(view))
-
-    async def request_keyframe(self) -> None:
-        """Requests a keyframe of each island: a snapshot encoded without a baseline. Works even if the world is paused."""
-        await self._link.perform(self._stream.request_keyframe())
-
-
-class Events(_Stream):
-    """A subscription to events, returned by `World.events` and `Lab.events`. Iterating it yields the events.
-
-    After a reconnect the first event is an `events_dropped` with the count 0, because the number of missed events is unknown.
-    """
-
-    _stream: plans.EventStream
-
-    def __aiter__(self) -> Events:
-        return self
-
-    async def __anext__(self) -> stream_pb2.Event:
-        return await self._link.perform(self._stream.next())

@@ -49,15 +49,16 @@ class Link:
 
     @property
     def is_of_this_process(self) -> bool:
-        """Whether this process has created the connection. A forked process has neither its event loop nor its thread, and
-        must not write to the socket of its parent."""
+        """Whether this process has created the connection. A forked process has neither its event loop nor its thread,
+        and must not write to the socket of its parent."""
         return os.getpid() == self._process
 
     def require_own_process(self) -> None:
         """Raises NoConnection in a forked process."""
         if not self.is_of_this_process:
             raise NoConnection(
-                "another process has created this Lab, and a forked process cannot use it: call connect() in each process"
+                "another process has created this Lab, and a forked process cannot use it: call connect() in each "
+                "process"
             )
 
     @property

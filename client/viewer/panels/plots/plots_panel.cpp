@@ -26,14 +26,6 @@ std::string window_name(std::size_t window) {
     return window == 1 ? "each generation" : running_mean_name(window);
 }
 
-/// Explains the plot of selection.
-constexpr const char* selection_of_all =
-    "Price equation: by how much selection changed the mean of each gene. Above 0, organisms with more of it had more "
-    "offspring.";
-constexpr const char* selection_of_one =
-    "Price equation: the change of the mean is selection (which organisms had offspring) + transmission (crossover and "
-    "mutation) + migration.";
-
 constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},     {"Genes", Quantity::Genes},
                         {"Selection", Quantity::Selection}, {"Diversity", Quantity::Diversity},
                         {"Survivors", Quantity::Survivors}, {"Deaths", Quantity::Deaths}};
@@ -260,7 +252,6 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
         update_histogram(context);
     } else if (quantity == Quantity::Selection) {
         build_gene_choice(context, "selection of");
-        widgets::small_text(gene_.empty() ? selection_of_all : selection_of_one);
     }
     const auto* other_table = other_world_ ? &other_world_->history().table() : file_ ? &*file_ : nullptr;
     std::optional<Subject> other;

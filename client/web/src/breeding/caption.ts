@@ -1,4 +1,4 @@
-// Captions: sentences that explain the moment that the glass box shows. The words are those of evoview. No DOM.
+// Captions: sentences that explain the moment that the glass box shows. No DOM.
 import type {Message} from "../core/messages";
 import {three_digits, with_separators} from "../texts/numbers";
 import {type BreedingRecord, rank_of, slot_of} from "./record";

@@ -1,11 +1,12 @@
 // EventQueue: the events that the page has not taken yet, in order.
 //
-// A world without bodies can end thousands of generations per second. If the page is slower than the server, the queue drops events about the
-// progress of the simulation and adds an EventsDropped, so its memory stays bounded; events about clients are never dropped.
-import type {Message} from "./messages";
+// A world without bodies can end thousands of generations per second. If the page is slower than the server, the queue
+// drops events about the progress of the simulation and adds an EventsDropped, so its memory stays bounded. Events about
+// clients are never dropped.
+import type {Event} from "./protocol";
 
 export class EventQueue {
-  #events: Message[] = [];
+  #events: Event[] = [];
 
   /** most: more events than these make the queue drop. */
   readonly #most: number;
@@ -18,7 +19,7 @@ export class EventQueue {
     return this.#events.length === 0;
   }
 
-  push(event: Message): void {
+  push(event: Event): void {
     this.#events.push(event);
     if (this.#events.length <= this.#most) {
       return;
@@ -27,14 +28,14 @@ export class EventQueue {
     this.#events = this.#events.filter((one) => {
       const drops =
         one.generation_finished !== undefined || one.migration !== undefined || one.events_dropped !== undefined;
-      dropped += one.events_dropped ? Number(one.events_dropped.dropped_count ?? 0) : drops ? 1 : 0;
+      dropped += one.events_dropped ? one.events_dropped.dropped_count ?? 0 : drops ? 1 : 0;
       return !drops;
     });
     this.#events.push({events_dropped: {dropped_count: dropped}});
   }
 
   /** Returns all events and empties the queue. */
-  take(): Message[] {
+  take(): Event[] {
     const events = this.#events;
     this.#events = [];
     return events;

@@ -69,6 +69,13 @@ export interface Drawing {
     null; // food and poison: only for tools other than select
 }
 
+/** What the newest snapshot says about an island that is shown as a tile. */
+export interface TileInfo {
+  generation: number;
+  alive: number;
+  health_mean: number; // of the living organisms; 0 if there are none
+}
+
 /** The camera of a pane, in pixels of the island. */
 export interface Camera {
   x_px: number; // the point in the middle of the pane
@@ -96,6 +103,7 @@ interface MessagesToWorker {
   resize: {pane: number; width: number; height: number; pixel_ratio: number}; // CSS pixels
   watch: {pane: number; world: string; island: number; rate_hz: number}; // subscribes; replaces the last watch
   unwatch: {pane: number};
+  islands: {pane: number; islands: number}; // so many islands of the watched world as tiles; 0: only the watched one
   camera: {pane: number; camera: Camera | null}; // null: the whole island
   pointer: {pane: number; at: {x: number; y: number} | null; tool: Tool}; // CSS pixels in the canvas
   look: {pane: number; look: Look};
@@ -136,6 +144,7 @@ interface MessagesFromWorker {
     selected: {x_px: number; y_px: number; health: number} | null
   };
   drawing: {pane: number; drawing: Drawing}; // after it has changed
+  tiles: {pane: number; tiles: (TileInfo | null)[]}; // while all islands are shown; null: before the first snapshot
   watch_refused: {pane: number; message: string};
   camera: {pane: number; camera: Camera}; // the camera followed an organism
   /** Outside of the island x_px is -1. */

@@ -29,13 +29,15 @@ export type ParameterEffect = "PARAMETER_EFFECT_UNSPECIFIED"|"PARAMETER_EFFECT_N
 export type ActorKind = "ACTOR_KIND_UNSPECIFIED"|"ACTOR_KIND_CLIENT"|"ACTOR_KIND_SCHEDULE"|"ACTOR_KIND_GOAL"|
   "ACTOR_KIND_SERVER";
 
-/** RUN_STATE_WAITING: the world is idle until Run
+/** Whether a world runs.
+ *  RUN_STATE_WAITING: the world is idle until Run
  *  RUN_STATE_PAUSED: the world has a goal but is paused
  *  RUN_STATE_TERMINATED: a termination criterion has ended the run */
 export type RunState = "RUN_STATE_UNSPECIFIED"|"RUN_STATE_WAITING"|"RUN_STATE_RUNNING"|"RUN_STATE_PAUSED"|
   "RUN_STATE_TERMINATED";
 
-/** OUTCOME_UNSPECIFIED: the run has not ended */
+/** The termination criterion that ended a run.
+ *  OUTCOME_UNSPECIFIED: the run has not ended */
 export type Outcome = "OUTCOME_UNSPECIFIED"|"OUTCOME_GENERATION_LIMIT"|"OUTCOME_TARGET_FITNESS"|"OUTCOME_STAGNATION"|
   "OUTCOME_EXTINCTION";
 
@@ -53,14 +55,15 @@ export type StorageState = "STORAGE_STATE_UNSPECIFIED"|"STORAGE_STATE_KEEPS_UP"|
  *  GENE_GROUP_FREE: the simulation does not read it (parameter free_genes) */
 export type GeneGroup = "GENE_GROUP_UNSPECIFIED"|"GENE_GROUP_BODY"|"GENE_GROUP_BRAIN"|"GENE_GROUP_FREE";
 
-/** CAUSE_OF_DEATH_UNSPECIFIED: the organism is alive
+/** Why an organism died.
+ *  CAUSE_OF_DEATH_UNSPECIFIED: the organism is alive
  *  CAUSE_OF_DEATH_REMOVED: a Remove removed it */
 export type CauseOfDeath = "CAUSE_OF_DEATH_UNSPECIFIED"|"CAUSE_OF_DEATH_STARVED"|"CAUSE_OF_DEATH_POISONED"|
   "CAUSE_OF_DEATH_REMOVED";
 
 /** The action of an organism in the next tick, computed from the current items. If food or poison reappears at the start
  *  of that tick, the action may differ.
- *  CHOICE_UNSPECIFIED: none: the organism is dead, its generation has ended, or there are no bodies
+ *  CHOICE_UNSPECIFIED: the organism is dead, its generation has ended, or there are no bodies
  *  CHOICE_SEEK: moves towards food
  *  CHOICE_FLEE: moves away from poison
  *  CHOICE_STEER: its neural network steers it */
@@ -123,6 +126,10 @@ export interface ParameterDescription {
   help?: string;
   /** one sentence about each of `choices`, in the same order; empty: none */
   choice_help?: string[];
+  /** The heading under which people see the parameter: "Food and poison". Parameters of a topic are neighbours in the registry. */
+  topic?: string;
+  /** users change the parameter often, so clients show it first */
+  is_most_used?: boolean;
 }
 
 export interface ParameterState {
@@ -226,12 +233,16 @@ export interface SpeedKinds {
 /** The requested speed of a world. */
 export interface Speed extends Partial<SpeedKinds> {}
 
+/** Whether the server can write a run to the disk. */
 export interface Storage {
   state?: StorageState;
   /** text for the user; empty in STORAGE_STATE_KEEPS_UP */
   reason?: string;
+  /** `state` and `reason` in one English sentence, for people: "commands are refused: …"; empty in STORAGE_STATE_KEEPS_UP */
+  text?: string;
 }
 
+/** The state of a world. */
 export interface WorldInfo {
   name?: string;
   /** 32 hexadecimal digits; every creation, fork and reset begins a run with a new id */
@@ -667,6 +678,9 @@ export interface Event extends Partial<EventKinds> {
   tick?: number;
   /** time at which the server sent the event, in milliseconds since 1970-01-01 00:00 UTC */
   time_ms?: number;
+  /** The event in one English sentence, for people: "anna set food_health to 30, revision 4". It starts in lower case and
+   *  has no full stop. proto/texts/events.json contains the sentences. Programs read `kind`, because sentences may change. */
+  text?: string;
 }
 
 export interface GenerationFinished {
@@ -897,10 +911,12 @@ export type ItemKind = "ITEM_KIND_UNSPECIFIED"|"ITEM_KIND_FOOD"|"ITEM_KIND_POISO
  *  METRIC_KIND_HISTOGRAM: counts all measurements since the start of the server */
 export type MetricKind = "METRIC_KIND_UNSPECIFIED"|"METRIC_KIND_COUNTER"|"METRIC_KIND_GAUGE"|"METRIC_KIND_HISTOGRAM";
 
+/** How an organism came into the next generation. */
 export type DescendantKind = "DESCENDANT_KIND_UNSPECIFIED"|"DESCENDANT_KIND_ELITE"|"DESCENDANT_KIND_SURVIVOR"|
   "DESCENDANT_KIND_CHILD";
 
-/** MUTATION_KIND_CLAMP: the value was outside its bounds and was set to the nearest bound
+/** How a gene was changed.
+ *  MUTATION_KIND_CLAMP: the value was outside its bounds and was set to the nearest bound
  *  MUTATION_KIND_SCALE: multiplied by a random factor */
 export type MutationKind = "MUTATION_KIND_UNSPECIFIED"|"MUTATION_KIND_CREEP"|"MUTATION_KIND_RESET"|
   "MUTATION_KIND_BIT_FLIP"|"MUTATION_KIND_CLAMP"|"MUTATION_KIND_SCALE";
@@ -1014,14 +1030,31 @@ export interface Response extends Partial<ResponseAnswers> {
   applied_tick?: number;
 }
 
+/** A value in the message of a refusal, for programs. The names, and the reasons whose refusals contain them:
+ *    world · suggestion                 the name in the request, and the most similar name that exists, if there is one
+ *                                       (REASON_WORLD_NOT_FOUND)
+ *    limit · held · allowed             name in the table of limits, number that is held, and number that is allowed
+ *                                       (reasons that end in _MAX)
+ *    expected_revision · revision       in the request, and of the world (REASON_REVISION_CHANGED)
+ *    expected_generation · generation   in the request, and of the world (REASON_GENERATION_CHANGED)
+ *    generation · island                what has been rated already or has not ended yet (REASON_FITNESS_NOT_AWAITED)
+ *    retry_after_s                      seconds until the request can succeed (REASON_LOGIN_TOO_SOON) */
+export interface Argument {
+  name?: string;
+  value?: string;
+}
+
 /** Why the server refused a request. */
 export interface Status {
   code?: Code;
-  /** one sentence for the user */
+  /** The whole refusal in English, for people: one sentence, then for each of the first 20 violations a line
+   *  "  FIELD: got X, allowed Y" with the path of the field. */
   message?: string;
   /** every invalid field, not only the first */
   violations?: Violation[];
   reason?: Reason;
+  /** values in the sentence that are not in `violations`, or are easier to read here */
+  arguments?: Argument[];
 }
 
 export interface CreateWorld {
@@ -1243,6 +1276,7 @@ export interface GetStatistics {
   world?: string;
 }
 
+/** The statistics of a world. */
 export interface Statistics {
   world?: WorldInfo;
   /** one per island; empty if the fitness depends only on the chromosome */
@@ -1422,6 +1456,7 @@ export interface GetBreeding {
   first_descendant?: number;
 }
 
+/** How a generation was bred. */
 export interface Breeding {
   /** generation of the parents */
   generation?: number;
@@ -1478,6 +1513,7 @@ export interface Migrant {
   organism?: number;
 }
 
+/** One selection of a parent. */
 export interface Pick {
   organism?: number;
   /** Roulette wheel: where the pointer stopped, in turns from the start of the first slot, 0 to 1. */
@@ -1489,6 +1525,7 @@ export interface Pick {
   contestants?: number[];
 }
 
+/** An organism of the next generation. */
 export interface Descendant {
   id?: number;
   kind?: DescendantKind;
@@ -1516,6 +1553,7 @@ export interface Descendant {
   more_from_second?: number[];
 }
 
+/** A mutation that changed the order of the genes. */
 export interface OrderMutation {
   /** a value of the parameter order_mutation, such as "swap" */
   method?: string;
@@ -1523,7 +1561,9 @@ export interface OrderMutation {
   order?: number[];
 }
 
+/** A mutation of one gene. */
 export interface Mutation {
+  /** index in WorldInfo.gene_names */
   gene?: number;
   kind?: MutationKind;
   before?: number;
@@ -1586,6 +1626,7 @@ export interface GetMotion {
   island?: number;
 }
 
+/** The motion of the bodies on an island. */
 export interface Motion {
   tick?: number;
   tick_s?: number;
@@ -1943,6 +1984,7 @@ export interface Messages {
   "evod.v1.RequestRules": RequestRules;
   "evod.v1.Request": Request;
   "evod.v1.Response": Response;
+  "evod.v1.Argument": Argument;
   "evod.v1.Status": Status;
   "evod.v1.CreateWorld": CreateWorld;
   "evod.v1.IslandPopulation": IslandPopulation;

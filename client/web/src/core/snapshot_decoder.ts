@@ -8,11 +8,11 @@
 //              long as it likes. It must not write into them: the decoder predicts the next snapshot from them, and
 //              successive snapshots share the columns that are equal. A caller may compare columns by identity to find
 //              those.
-import type {Message} from "./messages";
 import {crc32} from "./crc32";
 import {decode_body} from "./delta";
 import type {Baseline, Section} from "./delta";
 import {DamagedData} from "./errors";
+import type {Detail, SnapshotFrame, SnapshotTile} from "./protocol";
 import type {Boxes, CoarseTile, Items, Snapshot, SnapshotInfo} from "./snapshot";
 import {coarse_tile, decode_density, decode_dots, same_layout, TileMerger, tile_layout} from "./tiles";
 import type {TileLayout} from "./tiles";
@@ -21,13 +21,13 @@ import type {TileLayout} from "./tiles";
 type Unchanging = Pick<SnapshotInfo, "world"|"run_id"|"island_count"|"width_px"|"height_px"|"item_radius_px">;
 
 /** Returns whether a SnapshotFrame can be decoded without an earlier one. */
-export function is_keyframe(frame: Message): boolean {
-  return !frame.base_sequence && (frame.tiles ?? []).every((tile: Message) => !tile.base_sequence);
+export function is_keyframe(frame: SnapshotFrame): boolean {
+  return !frame.base_sequence && (frame.tiles ?? []).every((tile) => !tile.base_sequence);
 }
 
 interface Base {
   baseline: Baseline;
-  sequence: number|bigint; // of the snapshot
+  sequence: number; // of the snapshot
 }
 
 type WholeBase = Base&{same: Unchanging};
@@ -41,17 +41,17 @@ export class SnapshotDecoder {
   #merger = new TileMerger();
 
   /** frame: a SnapshotFrame message. */
-  decode(frame: Message): Snapshot {
+  decode(frame: SnapshotFrame): Snapshot {
     // The baselines are taken out first. If this frame is damaged, there are none.
     const whole = this.#whole, tiles = this.#tiles;
     this.#whole = this.#tiles = null;
     if (frame.codec !== "CODEC_DELTA") {
       throw new DamagedData(`a snapshot's codec is ${frame.codec ?? "missing"}; this page decodes only CODEC_DELTA`);
     }
-    return frame.tile_px ? this.#decode_tiles(frame, tiles) : this.#decode_whole(frame, whole);
+    return frame.tile_px ? this.#decode_tiles(frame, frame.tile_px, tiles) : this.#decode_whole(frame, whole);
   }
 
-  #decode_whole(frame: Message, last: WholeBase|null): Snapshot {
+  #decode_whole(frame: SnapshotFrame, last: WholeBase|null): Snapshot {
     const base_sequence = frame.base_sequence ?? 0, base = base_sequence === 0 ? null : last;
     if (base_sequence !== 0 && base === null) {
       throw new DamagedData("a snapshot has an unknown base: a keyframe is needed");
@@ -65,14 +65,14 @@ export class SnapshotDecoder {
     return snapshot_of(info, baseline.sections, []);
   }
 
-  #decode_tiles(frame: Message, last: TileBases|null): Snapshot {
+  #decode_tiles(frame: SnapshotFrame, tile_px: number, last: TileBases|null): Snapshot {
     const info = info_of(frame, unchanging(frame)), position_bytes = position_bytes_of(frame);
-    const layout = tile_layout(frame.tile_px, info.width_px, info.height_px), tile_count = layout.columns * layout.rows;
+    const layout = tile_layout(tile_px, info.width_px, info.height_px), tile_count = layout.columns * layout.rows;
     const before = last !== null && same_layout(last.layout, layout) ? last.bases : null;
     const bases = new Map<number, Base>(), coarse: CoarseTile[] = [];
     let index_before = -1;
-    for (const message of (frame.tiles ?? []) as Message[]) {
-      const index: number = message.tile ?? 0, sequence = message.sequence ?? 0;
+    for (const message of frame.tiles ?? []) {
+      const index = message.tile ?? 0, sequence = message.sequence ?? 0;
       if (index >= tile_count || index <= index_before) {
         throw new DamagedData(`a tile's index is ${index}, allowed: rising, below ${tile_count}`);
       }
@@ -80,7 +80,7 @@ export class SnapshotDecoder {
         throw new DamagedData(`a tile's sequence is ${sequence}, not that of its snapshot, ${info.sequence}`);
       }
       index_before = index;
-      const detail = details.indexOf(message.detail);
+      const detail = details.indexOf(message.detail ?? "DETAIL_UNSPECIFIED");
       if (detail < 1) {
         const allowed = details.slice(1).join(", ");
         throw new DamagedData(`a tile's detail is ${message.detail ?? "missing"}, allowed: ${allowed}`);
@@ -94,7 +94,7 @@ export class SnapshotDecoder {
         check_base(message.base_sequence, base);
       }
       const counts = counts_of(message);
-      const body = checked_body(message, position_bytes, crc32(little_endian([frame.tile_px, index, detail])));
+      const body = checked_body(message, position_bytes, crc32(little_endian([tile_px, index, detail])));
       if (message.detail === "DETAIL_FULL") {
         const baseline = decode_body(body, counts, position_bytes, true, base === null ? null : base.baseline);
         bases.set(index, {sequence, baseline});
@@ -114,22 +114,22 @@ export class SnapshotDecoder {
   }
 }
 
-const details = ["", "DETAIL_FULL", "DETAIL_DOTS", "DETAIL_DENSITY"]; // by number
+const details: readonly Detail[] = ["DETAIL_UNSPECIFIED", "DETAIL_FULL", "DETAIL_DOTS", "DETAIL_DENSITY"]; // by number
 
-function check_base(got: number|bigint, base: Base|null): void {
+function check_base(got: number, base: Base|null): void {
   if (base !== null && got !== base.sequence) {
     throw new DamagedData(`a snapshot's base_sequence is ${got}, not the last one, ${base.sequence}`);
   }
 }
 
-function counts_of(message: Message): number[] {
+function counts_of(message: SnapshotFrame|SnapshotTile): number[] {
   return [
     message.organism_count ?? 0, message.food_count ?? 0, message.poison_count ?? 0, message.crate_count ?? 0,
     message.obstacle_count ?? 0
   ];
 }
 
-function position_bytes_of(frame: Message): number {
+function position_bytes_of(frame: SnapshotFrame): number {
   const bytes = frame.position_bytes ?? 0;
   if (bytes !== 2 && bytes !== 4) {
     throw new DamagedData(`a snapshot's position_bytes is ${bytes}, not 2 or 4`);
@@ -141,7 +141,7 @@ function little_endian(numbers: number[]): Uint8Array {
   return new Uint8Array(new Uint32Array(numbers).buffer); // body.ts checks the order of the processor
 }
 
-function words_of(number: number|bigint): [low: number, high: number] {
+function words_of(number: number): [low: number, high: number] {
   const whole = BigInt(number);
   return [Number(whole & 0xffffffffn), Number(whole >> 32n)];
 }
@@ -151,12 +151,12 @@ const no_bytes = new Uint8Array(0);
 /** Returns the body of a SnapshotFrame or SnapshotTile after comparing its checksum.
  *
  *  before  the checksum of the bytes that precede the fields. */
-function checked_body(message: Message, position_bytes: number, before: number): Uint8Array {
+function checked_body(message: SnapshotFrame|SnapshotTile, position_bytes: number, before: number): Uint8Array {
   const compression = message.compression ?? "COMPRESSION_UNSPECIFIED";
   if (compression !== "COMPRESSION_NONE" && compression !== "COMPRESSION_UNSPECIFIED") {
     throw new DamagedData(`a snapshot's compression is ${compression}; this page decodes only uncompressed snapshots`);
   }
-  const body: Uint8Array = message.body ?? no_bytes;
+  const body = message.body ?? no_bytes;
   const fields = little_endian([
     ...words_of(message.sequence ?? 0), ...words_of(message.base_sequence ?? 0), ...counts_of(message), position_bytes
   ]);
@@ -167,7 +167,7 @@ function checked_body(message: Message, position_bytes: number, before: number):
 }
 
 /** from: a SnapshotFrame or the info of a snapshot. */
-function unchanging(from: Message|SnapshotInfo): Unchanging {
+function unchanging(from: SnapshotFrame|SnapshotInfo): Unchanging {
   const {world = "", run_id = "", island_count = 0, width_px = 0, height_px = 0, item_radius_px = 0} = from;
   return {
     world,
@@ -184,15 +184,15 @@ function hexadecimal(bytes: Uint8Array|undefined): string {
 }
 
 /** Checks the fields that do not contain entities. */
-function info_of(frame: Message, same: Unchanging): SnapshotInfo {
+function info_of(frame: SnapshotFrame, same: Unchanging): SnapshotInfo {
   const info: SnapshotInfo = {
     ...same,
     island: frame.island ?? 0,
     sequence: frame.sequence ?? 0,
     tile_px: frame.tile_px ?? 0,
-    tick: Number(frame.tick ?? 0),
-    generation: Number(frame.generation ?? 0),
-    generation_tick: Number(frame.generation_tick ?? 0),
+    tick: frame.tick ?? 0,
+    generation: frame.generation ?? 0,
+    generation_tick: frame.generation_tick ?? 0,
     simulated_s: frame.simulated_s ?? 0,
     state: frame.state ?? "RUN_STATE_UNSPECIFIED",
     speed: frame.speed,
@@ -200,7 +200,7 @@ function info_of(frame: Message, same: Unchanging): SnapshotInfo {
     live: frame.live,
     ticks_per_s: frame.ticks_per_s ?? 0,
     slowed: frame.slowed ?? false,
-    dropped_count: Number(frame.dropped_count ?? 0),
+    dropped_count: frame.dropped_count ?? 0,
     counts: {
       organisms: frame.organism_count ?? 0,
       food: frame.food_count ?? 0,

@@ -1,4 +1,7 @@
-// Lineage: an organism and its ancestors, read from the JSON lines that ExportRun sends in parts. No DOM.
+// Lineage: organisms and their parents, read from the CSV that ExportRun sends in parts. No DOM.
+//
+// The table contains only numbers and words of the protocol, so no cell is quoted.
+import {family_texts} from "../texts/family";
 
 /** An organism of the run: its generation, its island and its id there. */
 export interface OrganismName {
@@ -19,52 +22,86 @@ export function name_key(name: OrganismName): string {
   return `${name.generation}/${name.island}/${name.organism}`;
 }
 
-/** Joins the parts of the table. A part may end within a row, and within a character. */
-export class LineageReader {
-  readonly ancestors = new Map<string, Ancestor>();
+/** Whether the organism is a copy of its only parent. */
+export function is_copy(ancestor: Ancestor): boolean {
+  return ancestor.origin === "survivor" || ancestor.origin === "elite";
+}
+
+const columns = [
+  "generation", "island", "organism", "parent_first_generation", "parent_first_island", "parent_first",
+  "parent_second_generation", "parent_second_island", "parent_second", "origin", "fitness", "child_count", "kept_count"
+];
+
+/** Joins the parts of a table of lines. A part may end within a line, and within a character. */
+export class LineReader {
   #decoder = new TextDecoder();
   #rest = "";
 
-  /** Adds a part; `last` completes the table. Throws an Error if a line is no row of the lineage table. */
-  add(text: Uint8Array|undefined, last: boolean): void {
+  /** Returns the lines that this part completes; `last` completes the table. */
+  add(text: Uint8Array|undefined, last: boolean): string[] {
     const lines = (this.#rest + this.#decoder.decode(text ?? new Uint8Array(), {stream: !last})).split("\n");
     this.#rest = last ? "" : lines.pop()!;
-    for (const line of lines) {
-      if (line !== "") {
-        const ancestor = ancestor_of(line);
+    return lines.filter((line) => line !== "");
+  }
+}
+
+export class LineageReader {
+  readonly ancestors = new Map<string, Ancestor>();
+  #lines = new LineReader();
+  #places: number[]|null = null; // of `columns` in a line; null before the heading
+  #passed = false;
+
+  /** last_generation  ignores organisms of later generations */
+  constructor(readonly last_generation = Infinity) {}
+
+  /** Whether a later generation has begun. Generations rise in a table of all organisms, so the rest is not needed. */
+  get has_passed(): boolean {
+    return this.#passed;
+  }
+
+  /** Adds a part; `last` completes the table. Throws an Error if a line is not a row of the lineage table. */
+  add(text: Uint8Array|undefined, last: boolean): void {
+    for (const line of this.#lines.add(text, last)) {
+      const cells = line.split(",");
+      if (!this.#places) {
+        this.#places = columns.map((column) => cells.indexOf(column));
+        const missing = columns.find((_, i) => this.#places![i] === -1);
+        if (missing !== undefined) {
+          throw new Error(family_texts.no_column(missing));
+        }
+        continue;
+      }
+      const ancestor = ancestor_of(this.#places.map((place) => cells[place] ?? ""), line);
+      if (ancestor.generation <= this.last_generation) {
         this.ancestors.set(name_key(ancestor), ancestor);
+      } else {
+        this.#passed = true;
       }
     }
   }
 }
 
-function ancestor_of(line: string): Ancestor {
-  let row: {[column: string]: unknown};
-  try {
-    row = JSON.parse(line) as {[column: string]: unknown};
-  } catch {
-    throw new Error(`the lineage table has a line that is no JSON: ${line.slice(0, 80)}`);
+/** cells  in the order of `columns` */
+function ancestor_of(cells: readonly string[], line: string): Ancestor {
+  const number = (column: number): number|null => cells[column] === "" ? null : Number(cells[column]);
+  const [generation, island, organism] = [number(0), number(1), number(2)];
+  if (!Number.isInteger(generation) || !Number.isInteger(island) || !Number.isInteger(organism)) {
+    throw new Error(family_texts.wrong_row(line.slice(0, 80)));
   }
-  const number = (column: string): number|null => typeof row[column] === "number" ? row[column] as number : null;
-  const [generation, island, organism] = [number("generation"), number("island"), number("organism")];
-  if (generation === null || island === null || organism === null) {
-    throw new Error(`the lineage table has a row without an organism: ${line.slice(0, 80)}`);
-  }
-  const parents = ["parent_first", "parent_second"].flatMap((column) => {
-    const parent = number(column), of_generation = number(column + "_generation"),
-          of_island = number(column + "_island");
-    return parent === null || of_generation === null ?
+  const parents = [3, 6].flatMap((first): OrganismName[] => {
+    const parent = {generation: number(first), island: number(first + 1) ?? 0, organism: number(first + 2)};
+    return parent.generation === null || parent.organism === null ?
       [] :
-      [{generation: of_generation, island: of_island ?? 0, organism: parent}];
+      [{generation: parent.generation, island: parent.island, organism: parent.organism}];
   });
   return {
-    generation,
-    island,
-    organism,
-    origin: String(row.origin ?? ""),
-    fitness: number("fitness"),
+    generation: generation!,
+    island: island!,
+    organism: organism!,
+    origin: cells[9]!,
+    fitness: number(10),
     parents: parents.length === 2 && name_key(parents[0]!) === name_key(parents[1]!) ? [parents[0]!] : parents,
-    child_count: number("child_count") ?? 0,
-    kept_count: number("kept_count") ?? 0,
+    child_count: number(11) ?? 0,
+    kept_count: number(12) ?? 0,
   };
 }

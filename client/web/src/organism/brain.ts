@@ -1,6 +1,7 @@
 // BrainDiagram: positions of the neurons and connections of a network, for a drawing. Inputs are at the left, hidden
 // neurons in the middle, outputs at the right. No DOM.
-import type {Message} from "../core/messages";
+import type {Brain} from "../core/protocol";
+import {brain_texts as texts} from "../texts/brain";
 
 export interface Neuron {
   kind: "input"|"hidden"|"output"|"bias";
@@ -30,16 +31,16 @@ export interface BrainDiagram {
 const row_height = 22;
 const height_max = 300;
 const radius_max = 7;
+const shown_inputs_max = 8; // in the text of a neuron
 
 /** Returns null if the number of weights is not that of the network.
  *
  *  weights       the genes of the group `brain`: see Brain in world.proto
  *  label_widths  room for the names at the left and at the right, in the unit of `width` */
 export function brain_diagram(
-  brain: Message, weights: readonly number[], width: number,
+  brain: Brain, weights: readonly number[], width: number,
   label_widths: {inputs: number; outputs: number}): BrainDiagram|null {
-  const inputs: number[] = brain.inputs ?? [], hidden: number[] = brain.hidden ?? [],
-                outputs: number[] = brain.outputs ?? [];
+  const inputs = brain.inputs ?? [], hidden = brain.hidden ?? [], outputs = brain.outputs ?? [];
   const bias = brain.has_bias ? 1 : 0;
   const weight_count = hidden.length * (inputs.length + bias) + outputs.length * (hidden.length + bias);
   if (inputs.length === 0 || hidden.length === 0 || outputs.length === 0 || weights.length !== weight_count) {
@@ -49,23 +50,25 @@ export function brain_diagram(
   const diagram: BrainDiagram = {width, height: Math.min(rows * row_height, height_max), neurons: [], connections: []};
   const left = label_widths.inputs, right = width - label_widths.outputs;
   const add_layer =
-    (layer: number, kind: Neuron["kind"], names: string[], activations: number[], x: number,
-     has_bias: boolean): [number, number] => {
-      const count = activations.length + (has_bias ? 1 : 0);
-      const row = Math.min(diagram.height / count, row_height);
-      const radius = Math.min(radius_max, row * 0.42);
-      const top = (diagram.height - row * count) / 2 + row / 2;
-      const begin = diagram.neurons.length;
-      activations.forEach((activation, i) => {
-        diagram.neurons.push({kind, layer, name: names[i] ?? String(i + 1), activation, x, y: top + row * i, radius});
-      });
-      if (has_bias) {
-        diagram.neurons.push({kind: "bias", layer, name: "bias", activation: 1, x, y: top + row * (count - 1), radius});
-      }
-      return [begin, diagram.neurons.length];
-    };
+    (layer: number, kind: Neuron["kind"], names: string[], activations: number[], x: number, has_bias: boolean):
+      [number, number] => {
+        const count = activations.length + (has_bias ? 1 : 0);
+        const row = Math.min(diagram.height / count, row_height);
+        const radius = Math.min(radius_max, row * 0.42);
+        const top = (diagram.height - row * count) / 2 + row / 2;
+        const begin = diagram.neurons.length;
+        activations.forEach((activation, i) => {
+          diagram.neurons.push({kind, layer, name: names[i] ?? String(i + 1), activation, x, y: top + row * i, radius});
+        });
+        if (has_bias) {
+          diagram.neurons.push(
+            {kind: "bias", layer, name: texts.bias, activation: 1, x, y: top + row * (count - 1), radius});
+        }
+        return [begin, diagram.neurons.length];
+      };
   const first = add_layer(0, "input", brain.input_names ?? [], inputs, left, bias !== 0);
-  const middle = add_layer(1, "hidden", hidden.map((_, i) => `hidden${i + 1}`), hidden, (left + right) / 2, bias !== 0);
+  const middle =
+    add_layer(1, "hidden", hidden.map((_, i) => texts.hidden(i + 1)), hidden, (left + right) / 2, bias !== 0);
   const last = add_layer(2, "output", brain.output_names ?? [], outputs, right, false);
   let gene = 0;
   for (const [before, layer] of [[first, middle], [middle, last]] as const) {
@@ -117,32 +120,25 @@ export function neighbour(diagram: BrainDiagram, neuron: number, key: string): n
 }
 
 /** "−0.42" */
-export function activation_text(activation: number): string {
-  return (activation < 0 ? "−" : "") + Math.abs(activation).toFixed(2);
-}
+export const activation_text = texts.number;
 
 /** "hidden3 → turn: weight −0.42" */
-export function connection_text(diagram: BrainDiagram, connection: Connection): string {
-  return `${diagram.neurons[connection.from]!.name} → ${diagram.neurons[connection.to]!.name}: weight ` +
-    `${activation_text(connection.weight)}`.replace(/_/g, " ");
+export function connection_text(diagram: BrainDiagram, {from, to, weight}: Connection): string {
+  return texts.connection(diagram.neurons[from]!.name, diagram.neurons[to]!.name, weight);
 }
 
 /** "hidden3: 0.31. Inputs: food distance × −1.20, …", the strongest first. */
 export function neuron_text(diagram: BrainDiagram, neuron: number): string {
   const of = diagram.neurons[neuron]!;
   if (of.kind === "bias") {
-    return "bias: a constant 1";
+    return texts.constant;
   }
-  const shown_max = 8;
-  const inputs = connections_of(diagram, neuron)
-                   .map((i) => diagram.connections[i]!)
-                   .filter((connection) => connection.to === neuron);
+  const inputs = connections_of(diagram, neuron).map((i) => diagram.connections[i]!).filter(({to}) => to === neuron);
   const shown =
-    inputs.slice(0, shown_max)
-      .map((connection) => `${diagram.neurons[connection.from]!.name} × ${activation_text(connection.weight)}`);
-  if (inputs.length > shown_max) {
-    shown.push(`and ${inputs.length - shown_max} weaker`);
+    inputs.slice(0, shown_inputs_max).map(({from, weight}) => texts.input(diagram.neurons[from]!.name, weight));
+  if (inputs.length > shown.length) {
+    shown.push(texts.weaker(inputs.length - shown.length));
   }
-  return (`${of.name}: ${activation_text(of.activation)}` + (shown.length > 0 ? `. Inputs: ${shown.join(", ")}` : ""))
-    .replace(/_/g, " ");
+  const text = texts.neuron(of.name, of.activation);
+  return shown.length === 0 ? text : texts.neuron_with_inputs(text, shown);
 }

@@ -1,6 +1,7 @@
 // OrganismHistory: what has been received about one organism since it was selected: its health over time, its death,
 // its offspring, and how often it and its parents were picked for breeding. No DOM.
-import type {Message, PopulationColumns} from "../core/messages";
+import type {PopulationColumns} from "../core/messages";
+import type {Brain, Breeding, Descendant, GetBreeding, OrganismInfo} from "../core/protocol";
 
 export const health_points_max = 1024; // when reached, every second point is removed
 export const offspring_generation_max = 20_000; // of a larger next generation, the offspring are not searched
@@ -33,6 +34,9 @@ export interface Child {
 /** How an organism came into its generation. */
 export type Origin = "unknown"|"elite"|"survivor"|"child";
 
+/** The fields of a GetBreeding but the world. */
+export type BreedingRequest = Omit<GetBreeding, "world">&{first_contender: number};
+
 export interface Range {
   min: number;
   mean: number;
@@ -41,8 +45,8 @@ export interface Range {
 
 export class OrganismHistory {
   readonly health: {s: number; health: number}[] = []; // seconds lived, rising
-  info: Message|null = null; // the newest OrganismInfo
-  brain: Message|null = null; // the last network that the server sent; it sends none for a dead organism
+  info: OrganismInfo|null = null; // the newest OrganismInfo
+  brain: Brain|null = null; // the last network that the server sent; it sends none for a dead organism
   ranges: Range[] = []; // of each gene in its generation; empty: unknown
   ended = false; // its generation has ended
   picks: Picks|null = null;
@@ -60,9 +64,9 @@ export class OrganismHistory {
   }
 
   /** Takes an OrganismInfo if it is about this organism: every generation uses the same ids. */
-  add_info(info: Message): void {
+  add_info(info: OrganismInfo): void {
     if (
-      (info.id ?? 0) !== this.place.id || Number(info.generation ?? 0) !== this.place.generation ||
+      (info.id ?? 0) !== this.place.id || (info.generation ?? 0) !== this.place.generation ||
       (info.island ?? 0) !== this.place.island) {
       return;
     }
@@ -95,7 +99,7 @@ export class OrganismHistory {
   /** Returns the fields of the next GetBreeding, without the world; null if nothing is missing.
    *
    *  has_bred  whether the organism's own generation has bred */
-  wanted(has_bred: boolean): Message|null {
+  wanted(has_bred: boolean): BreedingRequest|null {
     const {island, generation} = this.place;
     for (const parent of distinct_parents(this.info)) {
       if (!this.picks_of_parent(parent)) {
@@ -121,9 +125,9 @@ export class OrganismHistory {
   }
 
   /** Reads the answer to a request that wanted() returned. */
-  add_breeding(request: Message, breeding: Message): void {
-    const generation = Number(breeding.generation ?? 0);
-    const contender: Message|undefined = breeding.contenders?.[0];
+  add_breeding(request: BreedingRequest, breeding: Breeding): void {
+    const generation = breeding.generation ?? 0;
+    const contender = breeding.contenders?.[0];
     const picks: Picks|null = contender ? {
       organism: request.first_contender,
       count: contender.copies ?? 0,
@@ -144,9 +148,9 @@ export class OrganismHistory {
     }
   }
 
-  #add_descendants(breeding: Message): void {
+  #add_descendants(breeding: Breeding): void {
     const count = breeding.descendant_count ?? 0;
-    const rows: Message[] = breeding.descendants ?? [];
+    const rows = breeding.descendants ?? [];
     if (count > offspring_generation_max) {
       this.children_left_out = true;
       return;
@@ -160,7 +164,7 @@ export class OrganismHistory {
           other_parent: first === second ? null :
             first === this.place.id      ? second :
                                            first,
-          unchanged: first === second && !row.order_mutation && !(row.mutations?.length > 0),
+          unchanged: first === second && is_copy(row),
         });
       }
     }
@@ -178,9 +182,14 @@ export class OrganismHistory {
   }
 }
 
+/** Whether the descendant has the genes of its parent. */
+function is_copy({order_mutation, mutations = []}: Descendant): boolean {
+  return !order_mutation && mutations.length === 0;
+}
+
 /** The parents of an organism, each once. */
-export function distinct_parents(info: Message|null): number[] {
-  return [...new Set<number>(info?.parents ?? [])];
+export function distinct_parents(info: OrganismInfo|null): number[] {
+  return [...new Set(info?.parents ?? [])];
 }
 
 export function range_of(values: Float32Array): Range {

@@ -1,87 +1,87 @@
 // Sentences about one organism: its fate, its next action, its parents, why they were picked, and its offspring. The
-// words are those of evoview. No DOM.
-import type {Message} from "../core/messages";
-import {tenths, three_digits, with_separators} from "../texts/numbers";
-import type {Child, OrganismHistory, Origin, Picks} from "./history";
+// words are in texts/organism. No DOM.
+import {none_left} from "../core/messages";
+import type {OrganismInfo} from "../core/protocol";
+import {organism_texts as texts} from "../texts/organism";
+import type {Child, OrganismHistory, Origin, Picks, Range} from "./history";
+
+export {gene_label, gene_number} from "../texts/genes";
 
 export function fate_text(history: OrganismHistory): string {
-  const info = history.info;
+  const {info} = history;
   if (!info) {
     return "";
   }
-  const lived = `${tenths(info.lived_s ?? 0)} s`;
-  if (!info.alive) {
-    return info.cause_of_death === "CAUSE_OF_DEATH_REMOVED" ? `removed by a user after ${lived}` :
-      info.cause_of_death === "CAUSE_OF_DEATH_POISONED" ? `died of poison after ${lived}` :
-                                                          `died of hunger after ${lived}`;
+  const lived_s = info.lived_s ?? 0;
+  if (info.alive) {
+    return history.ended ? texts.alive_when_last_seen(lived_s) : texts.alive(lived_s, info.health ?? 0);
   }
-  return history.ended ? `alive when last seen after ${lived}; its generation has ended` :
-                         `alive for ${lived}, health ${tenths(info.health ?? 0)}`;
-}
-
-export function choice_text(info: Message): string {
-  const place = ` at (${with_separators(info.target_x_px ?? 0)}, ${with_separators(info.target_y_px ?? 0)})`;
-  switch (info.choice) {
-    case "CHOICE_WANDER":
-      return "about to wander";
-    case "CHOICE_SEEK":
-      return "about to seek food" + place;
-    case "CHOICE_FLEE":
-      return "about to flee from poison" + place;
-    case "CHOICE_STEER":
-      return "steered by its network";
+  switch (info.cause_of_death) {
+    case "CAUSE_OF_DEATH_REMOVED":
+      return texts.removed(lived_s);
+    case "CAUSE_OF_DEATH_POISONED":
+      return texts.poisoned(lived_s);
+    case "CAUSE_OF_DEATH_STARVED":
+    case "CAUSE_OF_DEATH_UNSPECIFIED":
+    case undefined:
+      return texts.starved(lived_s);
     default:
+      none_left(info.cause_of_death);
       return "";
   }
 }
 
-export function parents_text(info: Message, origin: Origin): string {
+export function choice_text(info: OrganismInfo): string {
+  const x_px = info.target_x_px ?? 0, y_px = info.target_y_px ?? 0;
+  switch (info.choice) {
+    case "CHOICE_WANDER":
+      return texts.wanders;
+    case "CHOICE_SEEK":
+      return texts.seeks(x_px, y_px);
+    case "CHOICE_FLEE":
+      return texts.flees(x_px, y_px);
+    case "CHOICE_STEER":
+      return texts.steers;
+    case "CHOICE_UNSPECIFIED":
+    case undefined:
+      return "";
+    default:
+      none_left(info.choice);
+      return "";
+  }
+}
+
+export function parents_text(info: OrganismInfo, origin: Origin): string {
   if (info.placed_tick !== undefined) {
-    return `No parents: placed by a user after tick ${with_separators(info.placed_tick)} of the generation`;
+    return texts.placed(info.placed_tick);
   }
-  const parents: number[] = info.parents ?? [];
-  if (parents.length === 0) {
-    return "No parents: founder of generation 1, or loaded from a file";
+  const [first, second] = info.parents ?? [];
+  if (first === undefined) {
+    return texts.founder;
   }
-  const generation = with_separators(Number(info.generation) - 1);
-  if (parents.length === 1 || parents[0] === parents[1]) {
-    const why = origin === "elite" ? ": this organism belongs to the elite" :
-      origin === "survivor"        ? ": this organism is a survivor" :
-      origin === "child"           ? ", which was both parents" :
-                                     "";
-    return `One parent: ${parents[0]} (generation ${generation})${why}`;
+  const generation = (info.generation ?? 0) - 1;
+  if (second !== undefined && first !== second) {
+    return texts.parents(first, second, generation);
   }
-  return `Parents: ${parents[0]} and ${parents[1]} (generation ${generation})`;
+  const why: {[from in Origin]:
+                string} = {elite: texts.of_elite, survivor: texts.of_survivors, child: texts.both_parents, unknown: ""};
+  return texts.one_parent(first, generation, why[origin]);
 }
 
 /** "Its parent 45 was picked 3 of 25 times, expected 1.71." */
-export function picks_text(subject: string, picks: Picks): string {
-  const copy = picks.migrant ? ` (a copy of organism ${picks.migrant.organism} of island ${picks.migrant.island})` : "";
-  return `${subject}${copy} was picked ${with_separators(picks.count)} of ${with_separators(picks.all)} ` +
-    `${picks.all === 1 ? "time" : "times"}, ` +
-    `expected ${three_digits(picks.expected)}.`;
+export function picks_text(subject: string, {migrant, count, all, expected}: Picks): string {
+  const whole = migrant ? texts.copy_of(subject, migrant.organism, migrant.island) : subject;
+  return texts.picked(whole, count, all, expected);
 }
 
 /** "12 (with 45)", "7 (unchanged)", "9 (single parent)" */
-export function child_text(child: Child): string {
-  return child.id +
-    (child.other_parent !== null ? ` (with ${child.other_parent})` :
-       child.unchanged ? " (unchanged)" :
-                         " (single parent)");
-}
-
-/** A gene's name for readers: "normal_speed" → "normal speed". */
-export function gene_label(name: string): string {
-  return name.replace(/_/g, " ");
+export function child_text({id, other_parent, unchanged}: Child): string {
+  return other_parent !== null ? texts.child_with(id, other_parent) :
+    unchanged                  ? texts.child_unchanged(id) :
+                                 texts.child_of_one(id);
 }
 
 /** "Range in this generation: 83.6 to 131.2, mean 104.9" */
-export function range_text(range: {min: number; mean: number; max: number}): string {
-  return `Range in this generation: ${gene_number(range.min)} to ${gene_number(range.max)}, mean ` +
-    `${gene_number(range.mean)}`;
-}
-
-/** Genes of the body are about 100, weights and free genes about 1. */
-export function gene_number(value: number): string {
-  return Math.abs(value) >= 10 ? tenths(value) : value.toFixed(2).replace("-", "−");
+export function range_text({min, max, mean}: Range): string {
+  return texts.gene_range(min, max, mean);
 }

@@ -1,7 +1,8 @@
-// App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices below.
-import type {Message, RequestKind} from "../core/messages";
+// App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices
+// below.
+import {kind_of, type RequestKind} from "../core/messages";
+import type {Event as WorldEvent} from "../core/protocol";
 import {panels} from "../panels/all";
-import {unused_name} from "../panels/new_world";
 import {Column} from "./column";
 import {set_attribute} from "../widgets/controls";
 import {copy_text} from "../widgets/copy";
@@ -10,87 +11,71 @@ import {event_text, noticed_events} from "../world/event_text";
 import {FitnessCurve} from "../plots/fitness_curve";
 import {LinkFollower} from "./link_follower";
 import {link_of} from "../world/link";
+import {unused_name} from "../world/names";
+import type {PlacedModel} from "../world/panel_context";
 import {Help, type KeyTarget, listen_to_keys} from "./keys";
-import {Banners, Notices, type Banner} from "../widgets/notices";
-import {PaneArea} from "./pane_area";
+import {Banners, Notices} from "../widgets/notices";
+import type {PaneArea} from "./pane_area";
+import {PaneAreas} from "./pane_areas";
 import type {Server} from "../world/server";
 import {of_browser} from "../world/storage";
-import {session_text, storage_text} from "../texts/texts";
+import {app_texts} from "../texts/app";
 import {theme_button} from "../widgets/theme";
 import type {Tokens} from "../world/tokens";
 import {Tools} from "./tools";
-import {ViewedWorld} from "../world/world";
+import type {ViewedWorld} from "../world/world";
+import {banners_of} from "./banners";
 
 const first_world = "default"; // shown first if the server has it
 
 export class App implements KeyTarget {
   readonly element: HTMLElement;
   readonly column: Column;
-  readonly areas: PaneArea[] = [];
 
-  #focused = 0;
-  #last_pane = -1;
-  #worlds: HTMLElement;
-  #empty: HTMLElement;
-  #banners = new Banners();
-  #notices = new Notices();
-  #help = new Help(this);
-  #link = new LinkFollower(this, () => this.#refresh());
-  #curve: FitnessCurve;
-  #show_column: HTMLButtonElement;
-
+  readonly #areas: PaneAreas;
+  readonly #empty: HTMLElement;
+  readonly #banners = new Banners();
+  readonly #notices = new Notices();
+  readonly #help = new Help(this);
+  readonly #link = new LinkFollower(this, () => this.refresh());
+  readonly #curve: FitnessCurve;
+  readonly #show_column: HTMLButtonElement;
   readonly #tokens: Tokens;
 
   constructor(readonly server: Server, tokens: Tokens) {
     this.#tokens = tokens;
     this.#empty = h(
-      "div", {class: "empty"}, h("p", {}, "The server has no world yet."),
+      "div", {class: "empty"}, h("p", {}, app_texts.no_world),
       h("button", {type: "button", class: "button button-primary", onclick: () => this.open("worlds", {create: true})},
-        "New world …"));
-    this.#worlds = h("main", {class: "worlds", id: "worlds", tabindex: -1});
-    this.#add_area();
+        app_texts.new_world));
+    this.#areas = new PaneAreas(server, {
+      notify: this.notify,
+      attempt: this.attempt,
+      copy_link: this.copy_link,
+      on_select: () => this.#show_organism(),
+      on_change: () => this.#refresh_column(),
+    });
     this.#curve = new FitnessCurve((generation) => void this.attempt(() => this.world().past.show(generation)));
-    const hide =
-      h("button", {
-        type: "button",
-        class: "button button-quiet square wide-only",
-        "aria-label": "Hide the column",
-        title: "Hide the column (D)",
-        onclick: () => this.toggle_column()
-      },
-        "»");
-    this.#show_column =
-      h("button", {
-        type: "button",
-        class: "button square show-column",
-        "aria-label": "Show the column",
-        title: "Show the column (D)",
-        onclick: () => this.toggle_column()
-      },
-        "«");
-    const help =
-      h("button", {
-        type: "button",
-        class: "button button-quiet square",
-        "aria-label": "Keys and gestures",
-        title: "Keys and gestures (?)",
-        onclick: () => this.toggle_help()
-      },
-        "?");
+    const button = (label: string, name: string, help: string, classes: string, act: () => void) =>
+      h("button", {type: "button", class: `button square ${classes}`, "aria-label": name, title: help, onclick: act},
+        label);
+    const toggle = (): void => this.toggle_column();
+    const hide = button("»", app_texts.hide_column, app_texts.hide_column_help, "button-quiet wide-only", toggle);
+    this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
+    const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, panels.map((make) => make(this)), new Tools(() => this.area().pane, this.notify),
+      this, server, panels.map((make) => make(this)), new Tools(() => this.area().pane.tool, this.notify),
       [theme_button(), help, hide]);
     this.column.curve.append(this.#curve.element);
     this.element =
       h("div", {class: "app"},
-        h("a", {class: "button skip", href: "#worlds", onclick: (event: Event) => this.#skip(event)},
-          "Skip to the world"),
-        this.#banners.element, this.#worlds, this.#show_column, this.column.element, this.#notices.element);
+        h("a", {class: "button skip", href: "#worlds", onclick: (event: Event) => this.#skip(event)}, app_texts.skip),
+        this.#banners.element, this.#areas.element, this.#show_column, this.column.element, this.#notices.element);
     set_attribute(this.element, "data-column", of_browser.get("column") === "collapsed" ? "collapsed" : "shown");
-    server.on_change(() => this.#refresh());
+    server.on_change(() => this.refresh());
     server.on_event((event) => this.#announce(event));
     listen_to_keys(this);
-    this.#refresh();
+    this.refresh();
     this.follow_link(location.hash);
   }
 
@@ -101,7 +86,24 @@ export class App implements KeyTarget {
 
   /** Shows the present state. */
   refresh(): void {
-    this.#refresh();
+    const server = this.server, names = server.world_names, {areas} = this;
+    this.#banners.set(banners_of(server, this.#tokens, this.#link, () => this.refresh()));
+    const first = names.includes(first_world) ? first_world : names[0];
+    if (server.worlds_known && !areas[0]!.world.name && first !== undefined) {
+      areas[0]!.world.show(first);
+    }
+    const ended = areas.length > 1 && areas.find((area) => area.world.name === ""); // its world was deleted
+    if (ended) {
+      this.#areas.close(ended);
+    }
+    const is_empty = server.worlds_known && names.length === 0;
+    areas.forEach((area) => (area.element.hidden = is_empty));
+    if (is_empty && !this.#empty.isConnected) {
+      this.#areas.element.append(this.#empty);
+    } else if (!is_empty) {
+      this.#empty.remove();
+    }
+    this.#refresh_column();
   }
 
   // ---- PanelContext ----
@@ -113,7 +115,7 @@ export class App implements KeyTarget {
 
   /** The world of the other pane if two are shown side by side. */
   other(): ViewedWorld|null {
-    return this.areas.find((_area, i) => i !== this.#focused)?.world ?? null;
+    return this.#areas.other?.world ?? null;
   }
 
   open = (name: string, subject?: {[key: string]: unknown}): void => {
@@ -130,6 +132,14 @@ export class App implements KeyTarget {
     }
   };
 
+  place_by_clicks = (model: PlacedModel): boolean => {
+    const problem = this.area().pane.tool.place_copies_of(model);
+    if (problem) {
+      this.notify(problem);
+    }
+    return problem === "";
+  };
+
   notify = (text: string): void => this.#notices.show(text);
 
   attempt = async(what: () => Promise<unknown>): Promise<boolean> => {
@@ -144,40 +154,29 @@ export class App implements KeyTarget {
 
   // ---- panes ----
 
+  get areas(): readonly PaneArea[] {
+    return this.#areas.all;
+  }
+
+  /** The pane with the focus. */
   area(): PaneArea {
-    return this.areas[this.#focused]!;
+    return this.#areas.focused;
   }
 
-  /** Shows a world in the other half, and focuses it. */
   show_beside(world: string, island = 0): ViewedWorld {
-    const area = this.areas[1 - this.#focused] ?? this.#add_area();
-    area.world.show(world, island);
-    this.#focus(area);
-    return area.world;
+    return this.#areas.show_beside(world, island);
   }
 
-  /** Shows a second world; or, if two are shown, only the focused one. The second one is the world that was forked
-   *  last; else the live world of a replay; else the next world of the list; else the past of the only world. */
   toggle_beside(): void {
-    if (this.areas.length > 1) {
-      this.#close_area(this.areas[1 - this.#focused]!);
-      return;
-    }
-    const server = this.server, shown = this.world(), {name, island} = shown;
-    const names = server.world_names;
-    const next = names[(names.indexOf(name) + 1) % names.length];
-    if (shown.past.forked && server.world(shown.past.forked)) {
-      this.show_beside(shown.past.forked, island);
-    } else if (shown.past.is_own_replay) {
-      this.show_beside(name, island);
-    } else if (next !== undefined && next !== name) {
-      this.show_beside(next);
-    } else if (shown.past.problem) {
-      this.notify(shown.past.problem);
-    } else {
-      const generation = shown.snapshot?.generation ?? 1, past = this.show_beside(name, island);
-      void this.attempt(() => past.past.show(generation));
-    }
+    this.#areas.toggle_beside();
+  }
+
+  toggle_link(): void {
+    this.#areas.toggle_link();
+  }
+
+  focus_other(): void {
+    this.#areas.focus_other();
   }
 
   fork = async(name?: string): Promise<void> => {
@@ -190,7 +189,7 @@ export class App implements KeyTarget {
       return;
     }
     world.past.forked = fork;
-    this.notify(`Forked the world ${fork} from this moment`);
+    this.notify(app_texts.forked(fork));
     this.show_beside(fork, island);
   };
 
@@ -212,69 +211,15 @@ export class App implements KeyTarget {
   copy_link = (world: ViewedWorld): void => {
     const link = this.link(world);
     if (link) {
-      void copy_text(link, "Link to this moment").then((copied) => copied && this.notify(`Copied ${link}`));
+      void copy_text(link, app_texts.link).then((copied) => copied && this.notify(app_texts.copied(link)));
     }
   };
-
-  focus_other(): void {
-    const other = this.areas.find((_area, i) => i !== this.#focused);
-    if (other) {
-      this.#focus(other);
-    }
-  }
-
-  #add_area(): PaneArea {
-    const world = new ViewedWorld(this.server, ++this.#last_pane);
-    const area: PaneArea = new PaneArea(world, {
-      worker: this.server,
-      notify: this.notify,
-      attempt: this.attempt,
-      copy_link: this.copy_link,
-      on_focus: () => this.#focus(area),
-      on_tool: () => this.#refresh(),
-      on_select: () => this.#show_organism(),
-      beside: () => (this.areas.length > 1 ? this.#close_area(area) : this.toggle_beside()),
-    });
-    for (const event of ["pointerdown", "focusin"]) { // before the controls of the pane act
-      area.element.addEventListener(event, () => this.#focus(area), {capture: true});
-    }
-    this.areas.push(area);
-    this.#worlds.append(area.element);
-    world.changes.listen(() => {
-      if (this.areas.length > 0 && this.world() === world) {
-        this.#refresh_column();
-      }
-    });
-    return area;
-  }
-
-  #close_area(area: PaneArea): void {
-    const other = this.areas.find((one) => one !== area)!;
-    this.areas.splice(this.areas.indexOf(area), 1);
-    area.close();
-    this.#focus(other);
-  }
 
   /** Shows the organism that the user has selected in a pane, unless the column is hidden. */
   #show_organism(): void {
     if (this.element.dataset.column !== "collapsed") {
       this.open("organism");
     }
-  }
-
-  #focus(area: PaneArea): void {
-    const index = this.areas.indexOf(area), are_two = this.areas.length > 1;
-    if (index < 0) {
-      return; // the pane is being closed
-    }
-    this.#focused = index;
-    set_attribute(this.#worlds, "data-panes", String(this.areas.length));
-    for (const one of this.areas) {
-      set_attribute(one.element, "data-focused", are_two ? String(one === area) : null);
-      set_attribute(one.element, "aria-current", are_two && one === area ? "true" : null);
-      one.set_beside(are_two);
-    }
-    this.#refresh_column();
   }
 
   // ---- the page ----
@@ -294,92 +239,26 @@ export class App implements KeyTarget {
 
   #skip(event: Event): void {
     event.preventDefault();
-    (this.area().element.querySelector<HTMLElement>("canvas, [tabindex]") ?? this.#worlds).focus();
-  }
-
-  #refresh(): void {
-    this.#banners.set(this.#wrong());
-    const server = this.server, names = server.world_names;
-    const first = names.includes(first_world) ? first_world : names[0];
-    if (server.worlds_known && !this.areas[0]!.world.name && first !== undefined) {
-      this.areas[0]!.world.show(first);
-    }
-    const ended = this.areas.length > 1 && this.areas.find((area) => area.world.name === ""); // its world was deleted
-    if (ended) {
-      this.#close_area(ended);
-    }
-    const empty = server.worlds_known && names.length === 0;
-    this.areas.forEach((area) => (area.element.hidden = empty));
-    if (empty && !this.#empty.isConnected) {
-      this.#worlds.append(this.#empty);
-    } else if (!empty) {
-      this.#empty.remove();
-    }
-    this.#refresh_column();
+    (this.area().element.querySelector<HTMLElement>("canvas:not([inert]), .island-tile[tabindex='0']") ??
+     this.#areas.element)
+      .focus();
   }
 
   #refresh_column(): void {
     if (this.column as Column | undefined) { // the first pane is there before the column
       this.column.refresh();
       this.#curve.update(this.world());
-      document.title = this.world().name ? `${this.world().name} – evod` : "evod";
+      document.title = app_texts.title(this.world().name);
     }
   }
 
   /** Reports what others have done to a world that is shown. */
-  #announce(event: Message): void {
-    const kind = Object.keys(noticed_events).find((name) => event[name] !== undefined);
-    const shown = this.areas.some((area) => area.world.name === event.world || area.world.shown === event.world);
-    if (kind && shown && !noticed_events[kind]!.some((command) => this.server.has_sent(command as RequestKind, event.world))) {
+  #announce(event: WorldEvent): void {
+    const kind = kind_of(event)?.kind, world = event.world ?? "";
+    const commands = kind === undefined ? undefined : noticed_events[kind];
+    const is_shown = this.areas.some((area) => area.world.name === world || area.world.shown === world);
+    if (commands && is_shown && !commands.some((command) => this.server.has_sent(command as RequestKind, world))) {
       this.notify(event_text(event)[0] + ".");
     }
-  }
-
-  /** Asks whether to use the token of a link. */
-  #other_token(): Banner[] {
-    const server = this.server, tokens = this.#tokens;
-    if (tokens.offered === null || server.state.phase !== "open") {
-      return [];
-    }
-    const use = (): void => server.connect(tokens.use(tokens.offered!)), keep = (): void => {
-      tokens.decline();
-      this.#refresh();
-    };
-    return [{
-      name: "token",
-      kind: "warn",
-      text: `The link contains another token. You are connected as ${session_text(server.state.welcome)}.`,
-      actions: [{label: "Use the token of the link", act: use}, {label: "Keep mine", act: keep}]
-    }];
-  }
-
-  #wrong(): Banner[] {
-    const server = this.server, {phase, message} = server.state, storage = storage_text(server.storage);
-    const reload = {label: "Reload", act: () => location.reload()};
-    return [
-      ...(
-        phase === "lost" || phase === "connecting" ? [{
-          name: "lost",
-          kind: "bad" as const,
-          text: server.going_away ? "The server has shut down. Trying again …" :
-                                    `${message || "Connecting"}. Trying again …`
-        }] :
-                                                     []),
-      ...(
-        phase === "open" && server.going_away ?
-          [{name: "going", kind: "warn" as const, text: "The server is shutting down."}] :
-          []),
-      ...(
-        server.updated ? [{
-          name: "updated",
-          kind: "warn" as const,
-          text: "The server was updated: reload the page.",
-          actions: [reload]
-        }] :
-                         []),
-      ...this.#other_token(),
-      ...this.#link.banners(),
-      ...(storage ? [{name: "storage", kind: "bad" as const, text: storage}] : []),
-    ];
   }
 }

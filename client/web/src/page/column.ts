@@ -144,7 +144,7 @@ export class Column {
     });
     set_text(
       this.#healthiest_label,
-      world.feed.healthiest.length > 0                   ? "Healthiest now:" :
+      world.feed.healthiest.length > 0              ? "Healthiest now:" :
         !world.snapshot                             ? "" :
         (world.snapshot.live?.alive_count ?? 0) > 0 ? "Zoom in to see which organisms are the healthiest." :
                                                       "No organism is alive.");

@@ -46,10 +46,12 @@ export class IslandLegend {
     this.element = h("div", {class: "island-legend", hidden: true}, this.#scale, this.#title, this.#entries);
   }
 
-  refresh(world: ViewedWorld): void {
+  /** shows_all: all islands are shown, which have colours only by health. */
+  refresh(world: ViewedWorld, shows_all: boolean): void {
     const scale = scale_of(world);
     const {title, entries} = entries_of(world);
-    this.element.hidden = world.feed.drawing === null || (scale === null && entries.length === 0);
+    const is_known = !shows_all || (world.look.colour_by === "health" && world.feed.drawing?.density === null);
+    this.element.hidden = world.feed.drawing === null || !is_known || (scale === null && entries.length === 0);
     if (this.element.hidden) {
       return;
     }
@@ -89,7 +91,7 @@ export class IslandLegend {
 }
 
 function scale_of(world: ViewedWorld): Scale|null {
-  const {look, feed: {drawing}} = world;
+  const {feed: {drawing}, look} = world;
   if (drawing === null) {
     return null;
   }
@@ -107,7 +109,7 @@ function scale_of(world: ViewedWorld): Scale|null {
 }
 
 function entries_of(world: ViewedWorld): {title: string; entries: Entry[]} {
-  const {look, feed: {drawing}} = world, population = world.population.columns;
+  const {feed: {drawing}, look, population: {columns: population}} = world;
   const entries: Entry[] = [];
   let title = "";
   const add = (mark: Entry["mark"], colour: Colour|string, text: string) =>

@@ -1,5 +1,8 @@
 // keys: the keys of the whole page, and the help that lists them. Keys of the canvas (pan, zoom) belong to Pane.
 import type {RequestKind} from "../core/messages";
+import type {Point} from "../render/camera";
+import {app_texts} from "../texts/app";
+import {gesture_help, key_help, key_texts} from "../texts/keys";
 import {Dialog} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
@@ -15,6 +18,7 @@ export interface KeyTarget extends PanelContext {
   area(): PaneArea;
   link(): string;
   toggle_beside(): void;
+  toggle_link(): void;
   focus_other(): void;
   toggle_column(): void;
   toggle_help(): void;
@@ -30,105 +34,85 @@ interface Binding {
 const last_panel_key = 9;
 
 const zoom_step = 1.25, pan_px = 48;
-const arrows: {[key: string]: [number, number]} = {
-  ArrowLeft: [-pan_px, 0],
-  ArrowRight: [pan_px, 0],
-  ArrowUp: [0, -pan_px],
-  ArrowDown: [0, pan_px]
+const arrows: {[key: string]: Point} = {
+  // how the drawn island moves
+  ArrowLeft: {x: pan_px, y: 0},
+  ArrowRight: {x: -pan_px, y: 0},
+  ArrowUp: {x: 0, y: pan_px},
+  ArrowDown: {x: 0, y: -pan_px}
 };
 
 const bindings: Binding[] = [
   {
     keys: [" "],
     shown: "Space",
-    help: "run, pause, resume",
+    help: key_help.pause,
     act: (app) => command(app, "pause", () => app.world().control.pause_or_resume())
   },
-  {keys: ["."], help: "one tick, then pause", act: (app) => command(app, "pause", () => app.world().control.step(1))},
+  {keys: ["."], help: key_help.tick, act: (app) => command(app, "pause", () => app.world().control.step(1))},
   {
     keys: [">", ":"],
     shown: "Shift+.",
-    help: "60 ticks, then pause",
+    help: key_help.ticks,
     act: (app) => command(app, "pause", () => app.world().control.step(60))
   },
   {
     keys: ["+", "="],
     shown: "+",
-    help: "double the speed",
+    help: key_help.faster,
     act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(2))
   },
   {
     keys: ["-", "_"],
     shown: "−",
-    help: "halve the speed",
+    help: key_help.slower,
     act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(0.5))
   },
   {
     keys: ["r"],
-    help: "real time",
+    help: key_help.real_time,
     act: (app) => command(app, "set_speed", () => app.world().control.set_speed({real_time_factor: 1}))
   },
   {
     keys: ["m"],
-    help: "maximum speed; again: the previous speed",
+    help: key_help.maximum,
     act: (app) => command(app, "set_speed", () => app.world().control.toggle_max_speed())
   },
-  {keys: ["PageDown"], shown: "Page Down", help: "next island", act: (app) => move_island(app, 1)},
-  {keys: ["PageUp"], shown: "Page Up", help: "previous island", act: (app) => move_island(app, -1)},
-  {keys: ["w"], help: "next world", act: (app) => next_world(app)},
-  {
-    keys: ["p"],
-    help: "replay the run of the world; again: the live world",
-    act: (app) => toggle_replay(app, app.world())
-  },
-  {keys: ["["], help: "in a replay: the previous generation", act: (app) => move_generation(app, -1)},
-  {keys: ["]"], help: "in a replay: the next generation", act: (app) => move_generation(app, 1)},
-  {
-    keys: ["b"],
-    help: "show a second world, or the past of this one, too; again: only the focused world",
-    act: (app) => app.toggle_beside()
-  },
-  {keys: ["x"], help: "move the focus to the other world", act: (app) => app.focus_other()},
-  {keys: ["f", "Home"], shown: "F   Home", help: "show the whole island", act: (app) => app.area().pane.fit()},
+  {keys: ["PageDown"], shown: "Page Down", help: key_help.next_island, act: (app) => move_island(app, 1)},
+  {keys: ["PageUp"], shown: "Page Up", help: key_help.previous_island, act: (app) => move_island(app, -1)},
+  {keys: ["i"], help: key_help.all_islands, act: (app) => app.area().toggle_tiles(app.notify)},
+  {keys: ["w"], help: key_help.next_world, act: (app) => next_world(app)},
+  {keys: ["p"], help: key_help.replay, act: (app) => toggle_replay(app, app.world())},
+  {keys: ["["], help: key_help.previous_generation, act: (app) => move_generation(app, -1)},
+  {keys: ["]"], help: key_help.next_generation, act: (app) => move_generation(app, 1)},
+  {keys: ["b"], help: key_help.beside, act: (app) => app.toggle_beside()},
+  {keys: ["x"], help: key_help.other_world, act: (app) => app.focus_other()},
+  {keys: ["k"], help: key_help.link, act: (app) => app.toggle_link()},
+  {keys: ["f", "Home"], shown: "F   Home", help: key_help.fit, act: (app) => app.area().pane.view.fit()},
   {
     keys: ["z"],
     shown: "Z   Shift+Z",
-    help: "zoom in, zoom out",
-    act: (app, event) => app.area().pane.zoom_by(event.shiftKey ? 1 / zoom_step : zoom_step)
+    help: key_help.zoom,
+    act: (app, event) => app.area().pane.view.zoom_by(event.shiftKey ? 1 / zoom_step : zoom_step)
   },
   {
     keys: Object.keys(arrows),
     shown: "←   →   ↑   ↓",
-    help: "move the view",
-    act: (app, event) => app.area().pane.pan_by(...arrows[event.key]!)
+    help: key_help.move,
+    act: (app, event) => app.area().pane.view.pan(arrows[event.key]!)
   },
-  {
-    keys: ["l"],
-    help: "follow the selected organism; again: stop",
-    act: (app) => app.world().selection.set_follow(!app.world().selection.follow)
-  },
-  {keys: ["c"], help: "colour by health, lineage, a gene, nothing", act: (app) => next_colouring(app)},
+  {keys: ["l"], help: key_help.follow, act: (app) => app.world().selection.set_follow(!app.world().selection.follow)},
+  {keys: ["c"], help: key_help.colour, act: (app) => next_colouring(app)},
   {
     keys: ["v"],
-    help: "perception radii: of the organism at the pointer, of all, of none",
+    help: key_help.perception,
     act: (app) => app.world().set_look({perception: next_of(app.world().look.perception)})
   },
-  {
-    keys: ["g"],
-    help: "forces: of the organism at the pointer, of all, of none",
-    act: (app) => app.world().set_look({forces: next_of(app.world().look.forces)})
-  },
-  {keys: ["t"], help: "show or hide trails", act: (app) => app.world().set_look({trails: !app.world().look.trails})},
-  {keys: ["d"], help: "hide the column; again: show it", act: (app) => app.toggle_column()},
-  {keys: ["?", "h", "F1"], shown: "?   H", help: "show or hide this help", act: (app) => app.toggle_help()},
-  {keys: ["Escape"], shown: "Esc", help: "close the help, end a tool, select no organism", act: (app) => escape(app)},
-];
-
-const gestures: [string, string][] = [
-  ["Ctrl+C", "copy a link to this moment"],
-  ["Wheel   pinch", "zoom at the pointer"],
-  ["Drag", "move the view"],
-  ["Click   tap", "select an organism; on empty space: select none; or use the chosen tool"],
+  {keys: ["g"], help: key_help.forces, act: (app) => app.world().set_look({forces: next_of(app.world().look.forces)})},
+  {keys: ["t"], help: key_help.trails, act: (app) => app.world().set_look({trails: !app.world().look.trails})},
+  {keys: ["d"], help: key_help.column, act: (app) => app.toggle_column()},
+  {keys: ["?", "h", "F1"], shown: "?   H", help: key_help.help, act: (app) => app.toggle_help()},
+  {keys: ["Escape"], shown: "Esc", help: key_help.escape, act: (app) => escape(app)},
 ];
 
 let by_pointer = false; // whether the focus was moved by a pointer last, not by a key
@@ -163,7 +147,7 @@ export function listen_to_keys(app: KeyTarget): void {
     if (link && event.clipboardData) {
       event.clipboardData.setData("text/plain", link);
       event.preventDefault();
-      app.notify(`Copied ${link}`);
+      app.notify(app_texts.copied(link));
     }
   });
 }
@@ -212,13 +196,13 @@ export class Help {
       return;
     }
     if (!this.#dialog) {
-      this.#dialog = new Dialog("Keys and gestures", "help");
+      this.#dialog = new Dialog(app_texts.help, "help");
       const panels = this.#app.column.panels.slice(0, last_panel_key);
       const lines: [string, string][] = [
         ...bindings.map(
           ({keys, shown, help}): [string, string] => [shown ?? keys.map((key) => key.toUpperCase()).join("   "), help]),
-        ...panels.map((panel, i): [string, string] => [String(i + 1), `show the panel ${panel.title}`]),
-        ...gestures,
+        ...panels.map((panel, i): [string, string] => [String(i + 1), key_texts.panel(panel.title)]),
+        ...gesture_help,
       ];
       this.#dialog.body.append(
         h("dl", {class: "keys"},
@@ -239,9 +223,7 @@ async function command(app: KeyTarget, kind: RequestKind, act: () => Promise<voi
   if (why) {
     app.notify(why);
   } else if (world.control.is_over && kind !== "set_speed") {
-    app.notify(
-      world.is_replay ? "This is the end of the replay; [ goes back by a generation." :
-                        "The run has ended; resetting the world starts it again.");
+    app.notify(world.is_replay ? key_texts.end_of_replay : key_texts.run_has_ended);
   } else {
     await act();
   }
@@ -262,7 +244,7 @@ function next_world(app: KeyTarget): void {
 async function move_generation(app: KeyTarget, by: number): Promise<void> {
   const world = app.world();
   if (!world.is_replay) {
-    app.notify("The world is live; P replays its run.");
+    app.notify(key_texts.is_live);
     return;
   }
   await world.past.move_generations(by);
@@ -276,14 +258,18 @@ function next_colouring(app: KeyTarget): void {
   const world = app.world(), all = ["", "health", "lineage", ...world.gene_names.slice(0, 6)];
   const next = all[(all.indexOf(world.look.colour_by) + 1) % all.length]!;
   world.set_look({colour_by: next});
-  app.notify(next ? `Colour: ${next}` : "Colour: none");
+  app.notify(key_texts.colour(next));
 }
 
 function escape(app: KeyTarget): void {
-  const pane = app.area().pane;
-  if (pane.tool !== "select") {
-    pane.set_tool("select");
+  const {tool, tiles} = app.area().pane, world = app.world();
+  if (tool.tool !== "select") {
+    tool.set("select");
+  } else if (world.selection.id !== null) {
+    world.selection.select(null);
+  } else if (tiles.is_on) {
+    tiles.toggle();
   } else {
-    app.world().selection.select(null);
+    tiles.return_to_all();
   }
 }

@@ -1,56 +1,91 @@
-// PaneArea: a pane with its strips: above the canvas what is shown and how the world runs, below it the time line of a replay
-// and the statistics of the island.
-import {with_separators} from "../texts/numbers";
-import {set_attribute} from "../widgets/controls";
+// PaneArea: a pane with its strips: above the canvas what is shown and how the world runs, below it the time line of a
+// replay and the statistics of the island.
+import {link_texts, pane_texts, tile_texts} from "../texts/pane";
+import {place_and_speed_text, state_word, statistics_texts} from "../texts/texts";
+import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text, svg} from "../widgets/dom";
-
+import type {ViewedWorld} from "../world/world";
 import {Pane, type PaneOptions} from "./pane";
 import {Timeline, type TimelineContext} from "./timeline";
-import {place_and_speed_text, state_word, statistics_texts} from "../texts/texts";
-import type {ViewedWorld} from "../world/world";
+
+export interface PaneAreaOptions extends Omit<PaneOptions, "world">, TimelineContext {
+  /** Shows a second world, or closes this pane if two are shown. */
+  beside(): void;
+  /** Links the views of two worlds, or unlinks them. */
+  link(): void;
+}
+
+function icon(...shapes: SVGElement[]): SVGElement {
+  return svg("svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"}, ...shapes);
+}
+
+function icon_button(name: string, ...content: (SVGElement|string)[]): HTMLButtonElement {
+  const classes = `button button-quiet square pane-button ${name}`;
+  return h("button", {type: "button", class: classes}, ...content);
+}
 
 export class PaneArea {
   readonly element: HTMLElement;
   readonly pane: Pane;
   readonly timeline: Timeline;
 
-  #generation = h("h1", {}, "");
-  #replay = h("span", {class: "badge badge-replay", hidden: true});
-  #place = h("span", {class: "pane-place"});
-  #state = h("span", {class: "pane-state"});
-  #beside = h("button", {type: "button", class: "button button-quiet square pane-beside"});
-  #foot = h("div", {class: "strip pane-foot"});
-  #message = h("p", {class: "pane-message", role: "status"});
+  readonly #generation = h("h1", {}, "");
+  readonly #replay = h("span", {class: "badge badge-replay", hidden: true});
+  readonly #place = h("span", {class: "pane-place"});
+  readonly #state = h("span", {class: "pane-state"});
+  readonly #islands: HTMLButtonElement;
+  readonly #link = icon_button(
+    "pane-link",
+    icon(svg(
+      "path", {d: "M6.5 9.5l3-3M7 5l2-2a2.8 2.8 0 0 1 4 4l-2 2M9 11l-2 2a2.8 2.8 0 0 1-4-4l2-2", class: "pane-icon"})));
+  readonly #beside = icon_button("pane-beside");
+  readonly #foot = h("div", {class: "strip pane-foot"});
+  readonly #message = h("p", {class: "pane-message", role: "status"});
 
-  /** beside: shows a second world, or closes this pane if two are shown. */
-  constructor(readonly world: ViewedWorld, options: Omit<PaneOptions, "world">&TimelineContext&{beside(): void}) {
+  constructor(readonly world: ViewedWorld, options: PaneAreaOptions) {
     this.pane = new Pane({...options, world});
     this.timeline = new Timeline(world, options);
+    this.#islands = guarded_button(tile_texts.show, options.notify, () => this.toggle_tiles(options.notify));
+    this.#islands.className = "button button-quiet pane-islands";
+    this.#islands.replaceChildren(
+      icon(svg("path", {d: "M2 2h5v5H2zM9 2h5v5H9zM2 9h5v5H2zM9 9h5v5H9z", class: "pane-icon"})),
+      h("span", {}, tile_texts.show));
+    set_attribute(this.#islands, "aria-label", tile_texts.show);
+    set_attribute(this.#link, "aria-label", link_texts.name);
+    this.#link.addEventListener("click", () => options.link());
     this.#beside.addEventListener("click", () => options.beside());
     this.element =
-      h("section", {class: "pane-area", "aria-label": "World"},
+      h("section", {class: "pane-area", "aria-label": pane_texts.world},
         h("div", {class: "strip pane-head"}, this.#generation, this.#replay, h("span", {class: "grow"}), this.#place,
-          this.#state, this.#beside),
+          this.#state, this.#islands, this.#link, this.#beside),
         h("div", {class: "pane-stage"}, this.pane.element, this.#message), this.timeline.element, this.#foot);
-    this.set_beside(false);
+    this.set_beside(false, false);
     world.changes.listen(() => this.#refresh());
     this.#refresh();
   }
 
-  /** Whether the pane is one of two. */
-  set_beside(is_beside: boolean): void {
-    const text = is_beside ? "Close this world" : "Show a second world beside (B)";
+  /** Shows all islands as tiles, or only the chosen one. */
+  toggle_tiles(notify: (text: string) => void): void {
+    const problem = this.pane.tiles.toggle();
+    if (problem !== "") {
+      notify(problem);
+    }
+    this.#refresh();
+  }
+
+  /** are_two: whether the pane is one of two; are_linked: whether both move together. */
+  set_beside(are_two: boolean, are_linked: boolean): void {
+    this.#link.hidden = !are_two;
+    set_attribute(this.#link, "aria-pressed", String(are_linked));
+    set_attribute(this.#link, "title", `${link_texts.name}. ${are_linked ? link_texts.linked : link_texts.help}`);
+    const text = are_two ? pane_texts.close : pane_texts.beside;
     if (this.#beside.title === text) {
       return;
     }
     set_attribute(this.#beside, "aria-label", text);
     set_attribute(this.#beside, "title", text);
-    this.#beside.replaceChildren(
-      is_beside ? "✕" :
-                  svg(
-                    "svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"},
-                    svg("rect", {x: 1.5, y: 2.5, width: 13, height: 11, rx: 1.5, class: "beside-frame"}),
-                    svg("path", {d: "M8 3v10", class: "beside-frame"})));
+    const frame = svg("rect", {x: 1.5, y: 2.5, width: 13, height: 11, rx: 1.5, class: "pane-icon"});
+    this.#beside.replaceChildren(are_two ? "✕" : icon(frame, svg("path", {d: "M8 3v10", class: "pane-icon"})));
   }
 
   close(): void {
@@ -61,29 +96,49 @@ export class PaneArea {
   }
 
   #refresh(): void {
-    const world = this.world, snapshot = world.snapshot, info = world.info, server = world.server;
-    const replay_of = info?.replay && (info.replay.replay_of || "a file");
-    set_text(this.#generation, snapshot ? `Generation ${with_separators(snapshot.generation)}` : "");
+    const world = this.world, {snapshot, info, server} = world;
+    const replay_of = info?.replay && (info.replay.replay_of || pane_texts.a_file);
+    set_text(this.#generation, snapshot ? pane_texts.generation(snapshot.generation) : "");
     this.#replay.hidden = !replay_of;
-    set_text(this.#replay, replay_of ? `REPLAY of ${replay_of}` : "");
-    const running = world.control.state === "RUN_STATE_RUNNING";
-    set_text(this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.control.speed, running) : world.name);
-    const connected = server.state.phase === "open";
-    const state = !connected ? "not connected" :
-      snapshot || info       ? world.control.at_end ?
-                               "end of the replay" :
-                               state_word(world.control.state, info?.storage ?? server.storage, info?.awaited_fitness !== undefined) :
-                               "";
-    set_text(this.#state, state + (connected && running && info?.slowed ? " slower" : ""));
-    set_attribute(this.#state, "data-state", connected && running ? "running" : "stopped");
+    set_text(this.#replay, replay_of ? pane_texts.replay_of(replay_of) : "");
+    const is_running = world.control.state === "RUN_STATE_RUNNING";
+    set_text(
+      this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.control.speed, is_running) : world.name);
+    const is_connected = server.state.phase === "open";
+    set_text(this.#state, this.#state_text() + (is_connected && is_running && info?.slowed ? pane_texts.slower : ""));
+    set_attribute(this.#state, "data-state", is_connected && is_running ? "running" : "stopped");
+    this.#refresh_islands();
     const texts = snapshot ? statistics_texts(snapshot) : [];
     while (this.#foot.children.length > texts.length) {
       this.#foot.lastElementChild!.remove();
     }
     texts.forEach((text, i) => set_text(this.#foot.children[i] ?? this.#foot.appendChild(h("span", {})), text));
-    set_text(this.#message, world.feed.problem || (snapshot || !world.shown ? "" : "Waiting for the first snapshot …"));
+    const is_waiting = !snapshot && world.shown !== "" && !this.pane.tiles.is_on;
+    set_text(this.#message, world.feed.problem || (is_waiting ? pane_texts.waiting : ""));
     this.#message.hidden = this.#message.textContent === "";
     set_attribute(
-      this.element, "aria-label", world.name ? `World ${world.name}${world.is_replay ? ", replay" : ""}` : "World");
+      this.element, "aria-label", world.name ? pane_texts.world_named(world.name, world.is_replay) : pane_texts.world);
+  }
+
+  #state_text(): string {
+    const {info, server, snapshot, control: {at_end, state}} = this.world;
+    if (server.state.phase !== "open") {
+      return pane_texts.not_connected;
+    }
+    if (!snapshot && !info) {
+      return "";
+    }
+    return at_end ? pane_texts.end_of_replay :
+                    state_word(state, info?.storage ?? server.storage, info?.awaited_fitness !== undefined);
+  }
+
+  #refresh_islands(): void {
+    const {tiles} = this.pane, {island} = this.world;
+    this.#islands.hidden = tiles.island_count < 2;
+    set_attribute(this.#islands, "aria-pressed", String(tiles.is_on));
+    const help = tiles.is_on ? tile_texts.hide_help(island) :
+      tiles.can_return       ? tile_texts.back_help :
+                               tile_texts.show_help(tiles.island_count);
+    set_allowed(this.#islands, tiles.problem, help);
   }
 }

@@ -10,7 +10,7 @@ import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 
 import {joined_marks, marked_generations, TimeScale, type JoinedMark, type Moment} from "../world/time_scale";
-import type {Message} from "../core/messages";
+import type {GenerationStatistics} from "../core/protocol";
 import type {ViewedWorld} from "../world/world";
 
 const label_room_px = 56; // between labels
@@ -59,7 +59,7 @@ export class Timeline {
   #seeking = false;
   #extinctions: number[] = []; // generations, oldest first
   /** How far #extinctions describes the history. */
-  #scanned: {first: Message|undefined; island: number; generation: number}|null = null;
+  #scanned: {first: GenerationStatistics|undefined; island: number; generation: number}|null = null;
   #texts: JoinedMark[] = [];
   #drawn = ""; // what labels and marks show
   #rebuilt_ms = -rebuild_ms;

@@ -1,40 +1,33 @@
-// Tools: what a click on the island does: select, place food, poison or a copy of an organism, or remove. Shown while the user
-// takes part.
-import type {Tool} from "../core/messages";
+// Tools: what a click on the island does: select, place food, poison or a copy of an organism, or remove. Shown while the
+// user takes part.
+import {tool_buttons, tool_texts} from "../texts/pane";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
-import type {Pane} from "./pane";
-
-const tools: [Tool, string, string][] = [
-  ["select", "Select", "A click in the island selects the organism there (Esc)."],
-  ["food", "Food", "A click in the island places food. It does not reappear when it is eaten."],
-  ["poison", "Poison", "A click in the island places poison. It does not reappear when it is eaten."],
-  ["organism", "Organism", "A click in the island places a copy of the selected organism."],
-  ["remove", "Remove", "A click in the island removes the organism, food or poison there until the generation ends."],
-];
+import type {PaneTool} from "./pane_tool";
 
 export class Tools {
   readonly element: HTMLElement;
-  #buttons: HTMLButtonElement[];
+  readonly #buttons: HTMLButtonElement[];
+  readonly #tool: () => PaneTool;
 
-  readonly #pane: () => Pane;
-
-  constructor(pane: () => Pane, notify: (text: string) => void) {
-    this.#pane = pane;
-    this.#buttons = tools.map(([tool, label]) => guarded_button(label, notify, () => pane().set_tool(tool)));
+  /** tool: of the focused pane. */
+  constructor(tool: () => PaneTool, notify: (text: string) => void) {
+    this.#tool = tool;
+    this.#buttons = tool_buttons.map(({tool: name, label}) => guarded_button(label, notify, () => tool().set(name)));
     this.element =
-      h("div", {class: "row tools", role: "group", "aria-label": "Click"}, h("span", {}, "Click"), ...this.#buttons);
+      h("div", {class: "row tools", role: "group", "aria-label": tool_texts.group}, h("span", {}, tool_texts.group),
+        ...this.#buttons);
   }
 
   refresh(taking_part: boolean): void {
-    const pane = this.#pane();
+    const tool = this.#tool();
     this.element.hidden = !taking_part;
-    if (pane.tool !== "select" && pane.tool_problem(pane.tool)) {
-      pane.set_tool("select");
+    if (tool.problem()) {
+      tool.set("select");
     }
-    tools.forEach(([tool, , help], i) => {
-      set_allowed(this.#buttons[i]!, pane.tool_problem(tool), help);
-      set_attribute(this.#buttons[i]!, "aria-pressed", String(pane.tool === tool));
+    tool_buttons.forEach(({tool: name, help}, i) => {
+      set_allowed(this.#buttons[i]!, tool.problem(name), help);
+      set_attribute(this.#buttons[i]!, "aria-pressed", String(tool.tool === name));
     });
   }
 }

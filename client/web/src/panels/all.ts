@@ -20,4 +20,8 @@ export const panels: ((context: PanelContext) => Panel)[] = [
     new LazyPanel("family", "Family tree", async () => new (await import("./loaded_later")).FamilyPanel(context)),
   (context) => new LazyPanel("plots", "Plots", async () => new (await import("./loaded_later")).PlotsPanel(context)),
   (context) => new EventsPanel(context),
+  (context) =>
+    new LazyPanel("freezer", "Freezer", async () => new (await import("./loaded_later")).FreezerPanel(context)),
+  (context) =>
+    new LazyPanel("physics", "Physics", async () => new (await import("./loaded_later")).PhysicsPanel(context)),
 ];

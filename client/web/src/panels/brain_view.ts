@@ -10,15 +10,16 @@ import {
   connection_text,
   connections_of,
   neighbour,
+  Neuron,
   neuron_text
 } from "../organism/brain";
-import type {Message} from "../core/messages";
+import type {Brain} from "../core/protocol";
+import {brain_texts as texts} from "../texts/brain";
+import {gene_label} from "../texts/genes";
 import {h, set_text, svg} from "../widgets/dom";
 
 const character_width = 6.6; // of a label, in CSS pixels
 const number_width = 38; // of " −0.00"
-const hint = "Circles: activation; lines: weights, wider if larger. Orange, solid: positive; blue, dashed: negative. " +
-  "Point at a line or a circle to read its numbers; with the keyboard: arrow keys, Enter.";
 
 export class BrainView {
   readonly element: HTMLElement;
@@ -38,7 +39,7 @@ export class BrainView {
   }
 
   /** Returns false if the message does not describe a network with these weights. */
-  update(brain: Message, weights: readonly number[], width: number): boolean {
+  update(brain: Brain, weights: readonly number[], width: number): boolean {
     const widest = (names: string[]|undefined): number =>
       Math.max(0, ...(names ?? []).map((name) => name.length)) * character_width + 14;
     const diagram = brain_diagram(
@@ -63,15 +64,14 @@ export class BrainView {
   }
 
   #build(diagram: BrainDiagram): void {
+    const count = (kind: Neuron["kind"]): number => diagram.neurons.filter((neuron) => neuron.kind === kind).length;
     const root = svg("svg", {
       class: "brain-svg",
       viewBox: `0 0 ${diagram.width} ${diagram.height}`,
       width: diagram.width,
       height: diagram.height,
       role: "group",
-      "aria-label": `Network: ${diagram.neurons.filter((neuron) => neuron.kind === "input").length} inputs, ` +
-        `${diagram.neurons.filter((neuron) => neuron.kind === "hidden").length} hidden neurons, ` +
-        `${diagram.neurons.filter((neuron) => neuron.kind === "output").length} outputs`,
+      "aria-label": texts.network(count("input"), count("hidden"), count("output")),
       onkeydown: (event: KeyboardEvent) => this.#press(event),
       onmouseleave: () => this.#point(null, null),
     });
@@ -115,11 +115,11 @@ export class BrainView {
       if (neuron.layer === 0) {
         group.append(svg(
           "text", {class: "neuron-name", x: neuron.x - gap, y: neuron.y, "text-anchor": "end"},
-          neuron.name.replace(/_/g, " ")));
+          gene_label(neuron.name)));
       } else if (neuron.kind === "output") {
         value = svg("text", {class: "neuron-value", x: diagram.width - 2, y: neuron.y, "text-anchor": "end"});
         group.append(
-          svg("text", {class: "neuron-name", x: neuron.x + gap, y: neuron.y}, neuron.name.replace(/_/g, " ")), value);
+          svg("text", {class: "neuron-name", x: neuron.x + gap, y: neuron.y}, gene_label(neuron.name)), value);
       }
       root.append(group);
       return {group, fill, value};
@@ -168,7 +168,7 @@ export class BrainView {
       this.#note,
       this.#connection !== null ? connection_text(diagram, diagram.connections[this.#connection]!) :
         this.#neuron !== null   ? neuron_text(diagram, this.#neuron) :
-                                  hint);
+                                  texts.hint);
   }
 
   #take_focus(neuron: number): void {

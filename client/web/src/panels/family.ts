@@ -1,345 +1,202 @@
-// Family tree panel: the selected organism and its ancestors, one row per generation, the earliest at the top. A click
-// on an ancestor shows the beginning of its generation in a replay and selects it there.
-//
-// Keyboard  The drawing is one tab stop. Arrow keys move between relatives; Enter shows the moment.
-import {type Ancestor, LineageReader, name_key, type OrganismName} from "../family/lineage";
-import {ancestor_text, type FamilyTree, family_tree, neighbour} from "../family/tree";
-import {h, set_text, svg} from "../widgets/dom";
-import {with_separators} from "../texts/numbers";
-import type {ViewedWorld} from "../world/world";
+// Family tree panel: one organism or a whole generation, and its ancestors, one row per generation, the earliest at the
+// top. Names the common ancestors of the generation, and of two organisms that the user marks. A click on an organism
+// shows the beginning of its generation in a replay and selects it there.
+import {FamilyData, type Subject} from "../family/family_data";
+import type {OrganismName} from "../family/lineage";
+import {ShownTree} from "../family/shown_tree";
+import type {FamilyTree, Place} from "../family/spot";
+import {place_of} from "../family/tree";
+import {family_texts} from "../texts/family";
+import {h, set_text} from "../widgets/dom";
 import type {Panel, PanelContext} from "../world/panel_context";
+import type {ViewedWorld} from "../world/world";
+import {FamilyChoices} from "./family_choices";
+import {FamilyDrawing} from "./family_drawing";
+import {legend_parts} from "./family_legend";
+import {FamilyMarks, organism_at} from "./family_marks";
+import {FamilyNote} from "./family_note";
+import {FamilyStatus} from "./family_status";
+import {FamilyTable} from "./family_table";
 import {Width} from "./width";
 
-const generation_choices = [5, 10, 20, 50, 100];
-const row_height = 36;
-const reach_px = 24; // a pointer this near to an organism points at it
+const zoom_of_button = 1.5;
 
 export class FamilyPanel implements Panel {
   readonly name = "family";
-  readonly title = "Family tree";
+  readonly title = family_texts.title;
   readonly element: HTMLElement;
 
-  #root: OrganismName|null = null;
-  #run_id = ""; // of `root`
-  #wanted = ""; // what was requested last
-  #number = 0; // of the last request
-  #ancestors: ReadonlyMap<string, Ancestor> = new Map();
-  #tree: FamilyTree|null = null;
-  #problem = "";
-  #drawn = "";
-  #at = {row: 0, place: 0}; // the organism that Tab leads to
-  #spots: SVGGElement[][] = [];
-  #positions: {x: number; y: number}[][] = [];
-
-  // ---- elements ----
-  readonly #heading = h("h2", {});
-  readonly #generations: HTMLSelectElement = h(
-    "select", {class: "field", onchange: () => this.refresh()},
-    ...generation_choices.map((count) => h("option", {value: count, selected: count === 10}, `${count} generations`)));
-  readonly #both: HTMLInputElement = h("input", {type: "checkbox", checked: true, onchange: () => this.refresh()});
-  readonly #reroot = h("button", {class: "button", onclick: () => this.#take_selection()});
-  readonly #status = h("p", {role: "status"});
-  readonly #retry = h("button", {class: "button", onclick: () => this.#try_again()}, "Retry");
-  readonly #drawing = h("div", {class: "family-drawing"});
-  readonly #note = h("p", {class: "family-note", "aria-live": "polite"});
-  readonly #help =
-    h("div", {},
-      h("p", {class: "hint"},
-        "Thick lines lead to first parents, which gave at least half of the genes; dashed lines lead to second " +
-          "parents. Filled: children; hollow: copies (survivors, elite); " +
-          "diamond: the first parent lived on another island."),
-      h("p", {class: "hint"},
-        "Click an organism to see the beginning of its generation. With the keyboard: arrow keys, Enter."));
-
+  #subject: Subject|null = null;
+  readonly #data = new FamilyData(() => this.refresh());
+  readonly #shown = new ShownTree();
+  readonly #choices = new FamilyChoices(() => this.refresh());
+  readonly #status = new FamilyStatus(this.#choices, this.#data, () => this.refresh());
+  readonly #marks = new FamilyMarks(() => this.refresh());
+  readonly #note = new FamilyNote((at) => this.#mark(at));
+  readonly #table = new FamilyTable();
+  readonly #drawing = new FamilyDrawing({
+    read: (at) => this.#note.read(this.#context.world(), at),
+    go_to: (at) => this.#go_to(at),
+    mark: (at) => this.#mark(at),
+  });
+  readonly #reroot = h("button", {class: "button", onclick: () => this.#take_shown()});
+  readonly #legend = h("p", {class: "hint family-legend", role: "group", "aria-label": family_texts.legend});
+  readonly #tree_parts: HTMLElement;
   readonly #width: Width;
-
   readonly #context: PanelContext;
 
   constructor(context: PanelContext) {
     this.#context = context;
+    const button = (text: string, label: string, act: () => void): HTMLElement =>
+      h("button", {class: "button", title: label, "aria-label": label, onclick: act}, text);
+    this.#tree_parts =
+      h("div", {class: "panel"}, this.#status.loaded, this.#status.sentence,
+        h("div", {class: "row"}, button("−", family_texts.zoom_out, () => this.#drawing.zoom(1 / zoom_of_button)),
+          button("+", family_texts.zoom_in, () => this.#drawing.zoom(zoom_of_button)),
+          button(family_texts.fit, family_texts.fit_title, () => this.#drawing.fit())),
+        this.#drawing.element, this.#legend, this.#note.element, this.#marks.element, this.#table.element,
+        h("p", {class: "hint"}, family_texts.help_lines), h("p", {class: "hint"}, family_texts.help_keys));
     this.element =
-      h("div", {class: "panel family"}, this.#heading,
-        h("div", {class: "row"}, this.#generations, h("label", {class: "check"}, this.#both, "both parents"),
-          this.#reroot),
-        this.#status, this.#retry, this.#drawing, this.#note, this.#help);
-    this.#generations.setAttribute("aria-label", "Generations");
+      h("div", {class: "panel family"}, this.#status.heading, this.#choices.element, this.#reroot, this.#status.problem,
+        this.#tree_parts);
     this.#width = new Width(this.element, () => this.refresh());
   }
 
-  /** subject  {generation, island, organism}: shows the tree of this organism. */
+  /** subject  {generation, island, organism}: shows the ancestors of this organism. */
   show(subject: {[key: string]: unknown}): void {
     const {generation, island, organism} = subject;
     if (typeof generation === "number" && typeof island === "number" && typeof organism === "number") {
-      this.#set_root({generation, island, organism});
+      this.#choices.whole = false;
+      this.#set_subject({generation, island, organism});
     }
     this.refresh();
   }
 
   refresh(): void {
-    const world = this.#context.world();
-    const snapshot = world.snapshot;
-    if (snapshot && this.#root && this.#run_id !== snapshot.run_id) {
-      this.#set_root(null);
+    const world = this.#context.world(), run_id = world.snapshot?.run_id;
+    if (run_id && this.#subject && (this.#subject.run_id !== run_id || this.#subject.whole !== this.#choices.whole)) {
+      this.#subject = null;
     }
-    if (!this.#root && snapshot && world.selection.id !== null) {
-      this.#set_root(selection_of(world));
+    const root = this.#shown_root(world);
+    if (!this.#subject && root) {
+      this.#set_subject(root);
     }
-    this.#request(world);
-    this.#draw(world);
+    this.#choices.set_genes(world.gene_names);
+    this.#load(world);
+    const subject = this.#subject, shown = this.#shown;
+    shown.update(subject, this.#data, this.#choices.form);
+    this.#status.show(subject, shown);
+    this.#draw_reroot(root);
+    this.#tree_parts.hidden = !shown.tree;
+    if (shown.tree) {
+      this.#draw(world, shown.tree);
+    } else {
+      this.#drawing.show(null, "");
+      this.#table.show(null);
+    }
   }
 
-  #set_root(root: OrganismName|null): void {
-    this.#root = root;
-    this.#run_id = this.#context.world().snapshot?.run_id ?? "";
-    this.#tree = null;
-    this.#problem = "";
+  // ---- the subject ----
+
+  /** What the tree shows if it begins at the shown moment; null if that needs a selected organism. */
+  #shown_root({snapshot, island, selection: {id: selected}}: ViewedWorld): OrganismName|null {
+    return !snapshot      ? null :
+      this.#choices.whole ? {generation: snapshot.generation, island, organism: 0} :
+      selected === null   ? null :
+                            {generation: snapshot.generation, island, organism: selected};
   }
 
-  #take_selection(): void {
-    this.#set_root(selection_of(this.#context.world()));
+  #set_subject(root: OrganismName): void {
+    const run_id = this.#context.world().snapshot?.run_id ?? "";
+    if (this.#subject?.run_id !== run_id) {
+      this.#note.forget();
+    }
+    this.#subject = {run_id, whole: this.#choices.whole, root};
+  }
+
+  #take_shown(): void {
+    const root = this.#shown_root(this.#context.world());
+    if (root) {
+      this.#set_subject(root);
+    }
     this.refresh();
   }
 
-  #try_again(): void {
-    this.#wanted = "";
-    this.refresh();
-  }
-
-  // ---- the lineage ----
-
-  #request(world: ViewedWorld): void {
-    const root = this.#root;
-    if (!root) {
-      return;
+  #load(world: ViewedWorld): void {
+    const source = {server: world.server, world: world.shown}, subject = this.#subject, tree = this.#shown.tree;
+    const organisms = (world.snapshot?.live?.organism_count ?? 0) * Math.max(1, world.info?.island_count ?? 1);
+    if (subject) {
+      this.#data.want(source, subject, this.#choices.form.generations, organisms);
     }
-    const generations = Number(this.#generations.value);
-    const wanted = `${this.#run_id}/${name_key(root)}/${generations}`;
-    if (wanted === this.#wanted) {
-      return;
+    if (tree && this.#data.lineage && this.#choices.colour_by.kind === "gene") {
+      void this.#data.want_genes(
+        source, tree.first_generation, tree.first_generation + tree.rows.length - 1,
+        organisms * world.gene_names.length);
     }
-    this.#wanted = wanted;
-    this.#problem = "";
-    const number = ++this.#number;
-    this.#read(world, root, Math.max(1, root.generation - generations + 1))
-      .then(
-        (ancestors) => {
-          if (number === this.#number) {
-            this.#ancestors = ancestors;
-            this.#drawn = "";
-            this.refresh();
-          }
-        },
-        (error: Error) => {
-          if (number === this.#number) {
-            this.#problem = error.message;
-            this.refresh();
-          }
-        });
-  }
-
-  async #read(world: ViewedWorld, of: OrganismName, first_generation: number): Promise<ReadonlyMap<string, Ancestor>> {
-    const reader = new LineageReader();
-    let part = await world.server.request("export_run", {
-      world: world.shown,
-      table: "RUN_TABLE_LINEAGE",
-      format: "TEXT_FORMAT_JSON_LINES",
-      of: {...of},
-      first_generation,
-    });
-    reader.add(part.text, part.last === true);
-    while (!part.last) {
-      part = await world.server.request("continue_export", {export_id: part.export_id});
-      reader.add(part.text, part.last === true);
-    }
-    return reader.ancestors;
   }
 
   // ---- the drawing ----
 
-  #draw(world: ViewedWorld): void {
-    const root = this.#root;
+  #draw_reroot(root: OrganismName|null): void {
+    const subject = this.#subject;
+    this.#reroot.hidden = !subject || !root ||
+      (subject.root.generation === root.generation && subject.root.island === root.island &&
+       (subject.whole || subject.root.organism === root.organism));
     set_text(
-      this.#heading,
-      root ? `Ancestors of organism ${root.organism} of generation ${with_separators(root.generation)}` :
-             "Family tree");
-    const selected = world.selection.id !== null && world.snapshot ? selection_of(world) : null;
-    this.#reroot.hidden = !selected || !root || name_key(selected) === name_key(root);
-    set_text(this.#reroot, selected ? `Tree of organism ${selected.organism}` : "");
-    const width = this.#width.within(280, 1000);
-    const drawn = root ?
-      [this.#run_id, name_key(root), this.#generations.value, this.#both.checked, this.#ancestors.size, width].join(
-        "/") :
-      "";
-    if (drawn !== this.#drawn) {
-      this.#drawn = drawn;
-      this.#tree =
-        root ? family_tree(this.#ancestors, root, this.#both.checked, Number(this.#generations.value)) : null;
-      this.#build(width);
-    }
-    set_text(
-      this.#status,
-      !root           ? "Select an organism to see its ancestors." :
-        this.#problem ? `The ancestors are unknown: ${this.#problem}.` :
-        this.#tree ? "" :
-                     "Loading …");
-    this.#status.classList.toggle("error", this.#problem !== "");
-    this.#retry.hidden = this.#problem === "";
-    this.#help.hidden = this.#drawing.hidden = this.#note.hidden = !this.#tree;
-    const generation = world.snapshot?.generation ?? 0;
-    this.#drawing.querySelectorAll(".family-generation")
-      .forEach(
-        (label) => label.classList.toggle("shown", label.getAttribute("data-generation") === String(generation)));
-    this.#mark(selected ? name_key(selected) : "");
+      this.#reroot,
+      !root                 ? "" :
+        this.#choices.whole ? family_texts.tree_of_generation(root.generation) :
+                              family_texts.tree_of_organism(root.organism));
   }
 
-  #build(width: number): void {
-    const tree = this.#tree;
-    this.#spots = [];
-    this.#positions = [];
+  #draw(world: ViewedWorld, tree: FamilyTree): void {
+    const {of_all} = this.#shown, colour_by = this.#choices.colour_by, marks = this.#marks.show(tree);
+    if (this.#shown.colour(colour_by, this.#data)) {
+      this.#legend.replaceChildren(...legend_parts(this.#shown.colouring!.legend, tree.first_generation));
+    }
+    const colouring = this.#shown.colouring!, {snapshot, island, selection: {id: selected}} = world;
+    this.#drawing.show(
+      {
+        tree,
+        width: this.#width.within(280, 1600),
+        colours: colouring.colours,
+        lines_in_colours: colour_by.kind === "lineage",
+        of_all,
+        of_two: marks.of_two,
+        marked: marks.places,
+        selected: snapshot && selected !== null ?
+          place_of(tree, {generation: snapshot.generation, island, organism: selected}) :
+          null,
+        shown_generation: snapshot?.generation ?? 0,
+      },
+      family_texts.drawing(tree.rows.length, this.#shown.organism_count));
+    this.#drawing.element.dataset.layoutMs = this.#shown.layout_ms.toFixed(1); // for measurements
+    this.#note.show({tree, of_all, marks, colouring, colour_by, genes: this.#data.genes, gene_names: world.gene_names});
+    this.#table.show({tree, of_all, of_two: marks.of_two});
+  }
+
+  // ---- one organism ----
+
+  #mark(at: Place): void {
+    if (this.#shown.tree) {
+      this.#note.read(this.#context.world(), at);
+      this.#marks.toggle(organism_at(this.#shown.tree, at));
+    }
+  }
+
+  #go_to(at: Place): void {
+    const world = this.#context.world(), tree = this.#shown.tree;
     if (!tree) {
-      this.#drawing.replaceChildren();
       return;
     }
-    const left = 46, room = width - left - 8, each = room / tree.width;
-    const radius = Math.min(11, Math.max(2.5, each * 0.42)), named = radius >= 9;
-    const height = tree.rows.length * row_height + 8;
-    const root = svg("svg", {
-      class: "family-svg",
-      viewBox: `0 0 ${width} ${height}`,
-      width,
-      height,
-      role: "group",
-      "aria-label": `Family tree of ${tree.rows.length} generations`,
-      onkeydown: (event: KeyboardEvent) => this.#press(event),
-      onclick: (event: MouseEvent) => this.#click(event),
-      onpointermove: (event: PointerEvent) => this.#point(event),
-    });
-    this.#positions =
-      tree.rows.map((row, i) => row.map((spot) => ({x: left + spot.x * each, y: i * row_height + row_height / 2 + 4})));
-    const lines = svg("g", {});
-    tree.rows.forEach((row, i) => row.forEach((spot, place) => {
-      const to = this.#positions[i]![place]!;
-      for (const [parent, kind] of [[spot.second, "second"], [spot.first, "first"]] as const) {
-        const from = parent >= 0 ? this.#positions[i - 1]![parent]! : null;
-        if (from && !(kind === "second" && spot.second === spot.first)) {
-          lines.append(svg("path", {
-            class: `family-line ${kind}`,
-            d: `M${from.x.toFixed(1)} ${from.y}C${from.x.toFixed(1)} ${from.y + row_height / 2} ${to.x.toFixed(1)} ` +
-              `${to.y - row_height / 2} ${to.x.toFixed(1)} ${to.y}`
-          }));
-        }
-      }
-    }));
-    root.append(lines);
-    this.#at = {row: tree.rows.length - 1, place: 0};
-    this.#spots = tree.rows.map((row, i) => {
-      const generation = tree.first_generation + i;
-      root.append(svg(
-        "text", {class: "family-generation", "data-generation": generation, x: 2, y: this.#positions[i]![0]!.y},
-        with_separators(generation)));
-      return row.map((spot, place) => {
-        const {x, y} = this.#positions[i]![place]!;
-        const {ancestor} = spot;
-        const copy = ancestor.origin === "survivor" || ancestor.origin === "elite";
-        const migrated = ancestor.parents[0] !== undefined && ancestor.parents[0].island !== ancestor.island;
-        const group = svg(
-          "g", {
-            class: `family-spot${copy ? " copy" : ""}`,
-            role: "button",
-            tabindex: i === this.#at.row && place === this.#at.place ? 0 : -1,
-            "aria-label": ancestor_text(ancestor),
-            "data-name": name_key(ancestor),
-            onfocus: () => this.#take_focus({row: i, place}),
-          },
-          migrated ? svg("polygon", {
-            points: `${x},${y - radius - 1} ${x + radius + 1},${y} ${x},${y + radius + 1} ${x - radius - 1},${y}`
-          }) :
-                     svg("circle", {cx: x, cy: y, r: radius}),
-          named && svg("text", {x, y}, String(ancestor.organism)));
-        root.append(group);
-        return group;
-      });
-    });
-    this.#drawing.replaceChildren(root);
-    this.#describe(this.#at.row, this.#at.place);
-  }
-
-  /** Marks the selected organism. */
-  #mark(selected: string): void {
-    for (const group of this.#spots.flat()) {
-      group.classList.toggle("selected", group.getAttribute("data-name") === selected);
-    }
-  }
-
-  #describe(row: number, place: number): void {
-    const ancestor = this.#tree?.rows[row]?.[place]?.ancestor;
-    set_text(this.#note, ancestor ? ancestor_text(ancestor) : "");
-  }
-
-  /** The organism nearest to the pointer, so that a finger hits small ones, too. */
-  #nearest(event: MouseEvent): {row: number; place: number}|null {
-    const box = (event.currentTarget as Element).getBoundingClientRect();
-    const x = event.clientX - box.left, y = event.clientY - box.top;
-    let found: {row: number; place: number}|null = null, least = reach_px;
-    this.#positions.forEach((row, i) => row.forEach((position, place) => {
-      const distance = Math.hypot(position.x - x, position.y - y);
-      if (distance < least) {
-        found = {row: i, place};
-        least = distance;
-      }
-    }));
-    return found;
-  }
-
-  #point(event: PointerEvent): void {
-    const spot = this.#nearest(event);
-    (event.currentTarget as Element).classList.toggle("pointing", spot !== null);
-    if (spot) {
-      this.#describe(spot.row, spot.place);
-    }
-  }
-
-  #click(event: MouseEvent): void {
-    const spot = this.#nearest(event);
-    if (spot) {
-      this.#spots[spot.row]![spot.place]!.focus();
-      this.#go_to(spot.row, spot.place);
-    }
-  }
-
-  #take_focus(spot: {row: number; place: number}): void {
-    this.#spots[this.#at.row]?.[this.#at.place]?.setAttribute("tabindex", "-1");
-    this.#at = spot;
-    this.#spots[spot.row]![spot.place]!.setAttribute("tabindex", "0");
-    this.#describe(spot.row, spot.place);
-  }
-
-  #press(event: KeyboardEvent): void {
-    if (event.key.startsWith("Arrow") && this.#tree) {
-      const next = neighbour(this.#tree, this.#at.row, this.#at.place, event.key);
-      this.#spots[next.row]![next.place]!.focus();
-    } else if (event.key === "Enter" || event.key === " ") {
-      this.#go_to(this.#at.row, this.#at.place);
-    } else {
-      return;
-    }
-    event.preventDefault();
-    event.stopPropagation();
-  }
-
-  #go_to(row: number, place: number): void {
-    const ancestor = this.#tree!.rows[row]![place]!.ancestor;
+    this.#note.read(world, at);
+    const {generation, island, organism} = organism_at(tree, at);
     void this.#context.attempt(async () => {
-      const world = this.#context.world();
-      await world.past.show(ancestor.generation);
-      if (world.island !== ancestor.island) {
-        world.choose_island(ancestor.island);
+      await world.past.show(generation);
+      if (world.island !== island) {
+        world.choose_island(island);
       }
-      world.selection.select(ancestor.organism);
+      world.selection.select(organism);
     });
   }
-}
-
-function selection_of(world: ViewedWorld): OrganismName {
-  return {generation: world.snapshot!.generation, island: world.island, organism: world.selection.id!};
 }

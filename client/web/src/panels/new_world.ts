@@ -1,5 +1,5 @@
-// NewWorldDialog: creates a world from one of the experiments that evod brings along, with the parameters of the shown world, or
-// from the text of an experiment file.
+// NewWorldDialog: creates a world from one of the experiments that evod brings along, with the parameters of the shown
+// world, or from the text of an experiment file. The first generation is drawn from the seed, or comes from the freezer.
 import annealing from "../../../../experiments/annealing.json";
 import brains from "../../../../experiments/brains.json";
 import classic from "../../../../experiments/classic.json";
@@ -7,10 +7,15 @@ import standard from "../../../../experiments/default.json";
 import islands from "../../../../experiments/islands.json";
 import rooy from "../../../../experiments/rooy.json";
 import trade_offs from "../../../../experiments/trade_offs.json";
-import {with_separators} from "../texts/numbers";
+import {first_population} from "../freezer/first_population";
+import {type Kept, kept_count, kept_organisms} from "../freezer/freezer";
+import {freezer_texts} from "../texts/freezer";
+import {new_world_texts as texts} from "../texts/new_world";
 import {capitalised} from "../texts/texts";
-import {Dialog, set_attribute} from "../widgets/controls";
+import {Dialog, set_attribute, set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {open_button} from "../widgets/files";
+import {gene_problem, name_characters_max, name_of_file, name_problem, unused_name} from "../world/names";
 
 import type {Message} from "../core/messages";
 import type {PanelContext} from "../world/panel_context";
@@ -19,29 +24,7 @@ const presets: [string, {description: string}][] = [
   ["default", standard], ["annealing", annealing], ["brains", brains], ["classic", classic], ["islands", islands],
   ["rooy", rooy], ["trade_offs", trade_offs]
 ];
-const name_bytes_max = 64;
 const seed_max = (1n << 64n) - 1n;
-
-/** What is wrong with the name of a world; empty if nothing is. */
-export function name_problem(field: string, name: string): string {
-  return /^[A-Za-z0-9_-]{1,64}$/.test(name) ?
-    "" :
-    `${field}: got "${name}", allowed 1 to ${name_bytes_max} characters of a-z A-Z 0-9 _ -`;
-}
-
-/** `base`, or `base` with the first number that makes it unused: "default-2". */
-export function unused_name(base: string, used: string[]): string {
-  if (!used.includes(base)) {
-    return base;
-  }
-  const stem = base.replace(/-\d+$/, "");
-  for (let number = 2;; ++number) {
-    const end = `-${number}`, name = stem.slice(0, name_bytes_max - end.length) + end;
-    if (!used.includes(name)) {
-      return name;
-    }
-  }
-}
 
 /** The text of an experiment file with the parameters and the schedule of a ParameterSet. */
 export function experiment_json(set: Message): string {
@@ -57,26 +40,45 @@ export function experiment_json(set: Message): string {
   return JSON.stringify(experiment, null, 2);
 }
 
-export class NewWorldDialog {
-  #dialog = new Dialog("New world", "new-world");
-  #choices = h("div", {class: "choices", role: "radiogroup", "aria-label": "Experiment"});
-  #name =
-    h("input",
-      {class: "field grow", id: "new-world-name", maxlength: name_bytes_max, spellcheck: "false", autocomplete: "off"});
+let dialog: NewWorldDialog|null = null;
+
+/** The dialog of the page. */
+export function new_world_dialog(context: PanelContext): NewWorldDialog {
+  dialog ??= new NewWorldDialog(context);
+  return dialog;
+}
+
+class NewWorldDialog {
+  #dialog = new Dialog(texts.title, "new-world");
+  #choices = h("div", {class: "choices", role: "radiogroup", "aria-label": texts.experiments});
+  #name = h("input", {
+    class: "field grow",
+    id: "new-world-name",
+    maxlength: name_characters_max,
+    spellcheck: "false",
+    autocomplete: "off",
+    oninput: () => (this.#name_edited = true)
+  });
   #seed = h("input", {
     class: "field grow",
     id: "new-world-seed",
     inputmode: "numeric",
-    placeholder: "empty: chosen at random",
+    placeholder: texts.seed_hint,
     autocomplete: "off"
   });
-  #text = h("textarea", {class: "field", rows: 8, spellcheck: "false", "aria-label": "Text of the experiment"});
+  #population =
+    h("select", {class: "field grow", id: "new-world-population", onchange: () => this.#describe_population()});
+  #population_help = h("p", {class: "hint"});
+  #text = h(
+    "textarea",
+    {class: "field", rows: 8, spellcheck: "false", "aria-label": texts.text_label, oninput: () => this.#choose_none()});
   #beside = h("input", {type: "checkbox"});
   #error = h("p", {class: "error grow", role: "alert"});
-  #create: HTMLButtonElement;
+  #create = h("button", {type: "submit", class: "button button-primary"}, texts.create);
   #same_label = h("span", {});
   #same: HTMLInputElement;
   #name_edited = false;
+  #kept: Kept[] = []; // what the first generation can be
 
   readonly #context: PanelContext;
 
@@ -85,65 +87,59 @@ export class NewWorldDialog {
     presets.forEach(
       ([name, {description}], i) =>
         this.#choices.append(this.#choice(h("span", {}, name), description, i === 0, () => this.#choose(name))));
-    const same = this.#choice(
-      this.#same_label, "The parameters and the schedule that this world has now.", false,
-      () => void this.#choose_same());
+    const same = this.#choice(this.#same_label, texts.same_help, false, () => void this.#choose_same());
     this.#same = same.querySelector("input")!;
     this.#choices.append(same);
-    const file = h("input", {
-                   type: "file",
-                   accept: ".json,application/json,text/plain",
-                   class: "visually-hidden",
-                   tabindex: -1,
-                   onchange: () => void this.#read(file)
-                 }) as HTMLInputElement;
-    this.#name.addEventListener("input", () => (this.#name_edited = true));
-    this.#text.addEventListener("input", () => this.#choose_none());
-    this.#create = h("button", {type: "submit", class: "button button-primary"}, "Create");
-    this.#dialog.body.append(h(
-      "form", {
-        class: "panel",
-        onsubmit: (event: Event) => {
-          event.preventDefault();
-          void this.#send();
-        }
-      },
-      this.#choices,
-      h("div", {class: "labelled"},
-        h("label",
-          { for: "new-world-name"
-          },
-          "name"),
-        this.#name,
-        h("label",
-          { for: "new-world-seed"
-          },
-          "seed"),
-        this.#seed),
-      h("p", {class: "hint"},
-        "The seed determines everything that is random. Two worlds with equal seeds and parameters are equal."),
-      h("details", {}, h("summary", {}, "Parameters as text"),
-        h("p", {class: "hint"}, "The text of the experiment. A parameter that it does not name has its default value."),
-        this.#text,
-        h("div", {class: "row"},
-          h("button", {type: "button", class: "button", onclick: () => file.click()}, "Open a file …"), file)),
-      h("label", {class: "check"}, this.#beside, "show it beside this world"),
-      h("div", {class: "row dialog-end"}, this.#error,
-        h("button", {type: "button", class: "button", onclick: () => this.#dialog.close()}, "Cancel"), this.#create)));
+    this.#dialog.body.append(this.#form());
   }
 
-  open(): void {
+  /** population: the name of the entry of the freezer with which the world begins; empty: drawn from the seed */
+  async open(population = ""): Promise<void> {
     const world = this.#context.world();
     this.#name_edited = false;
     set_text(this.#error, "");
     set_attribute(this.#name, "aria-invalid", null);
     set_attribute(this.#seed, "aria-invalid", null);
-    set_text(this.#same_label, `same as ${world.name}`);
+    set_text(this.#same_label, texts.same(world.name));
     this.#same.disabled = !world.parameters.set;
     this.#choices.querySelector("input")!.checked = true;
     this.#choose(presets[0]![0]);
+    await this.#list_populations(population);
+    if (population) { // an experiment with the genes of the population is more useful than the default
+      const genes = this.#kept.find((kept) => kept.name === population)?.gene_names;
+      if (genes && world.parameters.set && !gene_problem(population, genes, world.name, world.gene_names)) {
+        this.#same.checked = true;
+        await this.#choose_same();
+      }
+      this.#suggest(population);
+    }
     this.#dialog.open();
-    this.#choices.querySelector("input")!.focus();
+    this.#choices.querySelector<HTMLInputElement>("input:checked")!.focus();
+  }
+
+  #form(): HTMLElement {
+    const [open, field] =
+      open_button(texts.open_file, ".json,application/json,text/plain", false, (files) => void this.#read(files[0]));
+    const label = (control: HTMLElement, text: string): HTMLLabelElement => {
+      const made = h("label", {}, text);
+      made.htmlFor = control.id;
+      return made;
+    };
+    const submit = (event: Event): void => {
+      event.preventDefault();
+      void this.#send();
+    };
+    return h(
+      "form", {class: "panel", onsubmit: submit}, this.#choices,
+      h("div", {class: "labelled"}, label(this.#name, texts.name), this.#name, label(this.#seed, texts.seed),
+        this.#seed, label(this.#population, texts.population), this.#population),
+      this.#population_help, h("p", {class: "hint"}, texts.seed_help),
+      h("details", {}, h("summary", {}, texts.text), h("p", {class: "hint"}, texts.text_help), this.#text,
+        h("div", {class: "row"}, open, field)),
+      h("label", {class: "check"}, this.#beside, texts.beside),
+      h("div", {class: "row dialog-end"}, this.#error,
+        h("button", {type: "button", class: "button", onclick: () => this.#dialog.close()}, texts.cancel),
+        this.#create));
   }
 
   #choice(label: HTMLElement, description: string, checked: boolean, act: () => void): HTMLElement {
@@ -178,22 +174,62 @@ export class NewWorldDialog {
     }
   }
 
-  async #read(field: HTMLInputElement): Promise<void> {
-    const file = field.files?.[0];
+  async #read(file: File|undefined): Promise<void> {
     if (file) {
       this.#text.value = await file.text();
-      this.#suggest(
-        file.name.replace(/\.json$/, "").replace(/[^A-Za-z0-9_-]/g, "_").slice(0, name_bytes_max) || "world");
+      this.#suggest(name_of_file(file.name, "world"));
       this.#choose_none();
     }
-    field.value = "";
   }
+
+  // ---- the first population ----
+
+  async #list_populations(chosen: string): Promise<void> {
+    let problem = "";
+    try {
+      this.#kept = await kept_organisms().list();
+    } catch (error) {
+      this.#kept = [];
+      problem = texts.freezer_problem((error as Error).message);
+    }
+    const content = (kept: Kept): string =>
+      freezer_texts.content(kept_count(kept), kept.organism_counts.length, kept.gene_names.length);
+    set_options(
+      this.#population,
+      [
+        {value: "", text: texts.from_seed},
+        ...this.#kept.map((kept) => ({value: kept.name, text: `${kept.name} (${content(kept)})`}))
+      ],
+      chosen);
+    this.#describe_population();
+    if (problem) {
+      set_text(this.#population_help, problem);
+    }
+  }
+
+  #describe_population(): void {
+    const chosen = this.#kept.find((kept) => kept.name === this.#population.value);
+    set_text(
+      this.#population_help,
+      !chosen                    ? "" :
+        kept_count(chosen) === 1 ? texts.copies_help :
+                                   texts.population_help);
+  }
+
+  /** The fields of CreateWorld for the chosen population; a sentence if the world cannot begin with it. */
+  async #population_fields(): Promise<object|string> {
+    const name = this.#population.value;
+    return name === "" ?
+      {} :
+      first_population(await kept_organisms().population(name), this.#text.value, this.#context.server.parameters);
+  }
+
+  // ---- creation ----
 
   async #send(): Promise<void> {
     const name = this.#name.value.trim(), seed = this.#seed.value.trim();
     const seed_wrong = seed !== "" && !(/^\d{1,20}$/.test(seed) && BigInt(seed) <= seed_max);
-    const problem = name_problem("name", name) ||
-      (seed_wrong ? `seed: got "${seed}", allowed whole numbers from 0 to ${with_separators(seed_max)}` : "");
+    const problem = name_problem("name", name) || (seed_wrong ? texts.wrong_seed(seed, seed_max) : "");
     set_attribute(this.#name, "aria-invalid", name_problem("name", name) ? "true" : null);
     set_attribute(this.#seed, "aria-invalid", seed_wrong ? "true" : null);
     set_text(this.#error, capitalised(problem));
@@ -202,8 +238,14 @@ export class NewWorldDialog {
     }
     this.#create.disabled = true;
     try {
+      const population = await this.#population_fields();
+      if (typeof population === "string") {
+        set_text(this.#error, capitalised(population));
+        return;
+      }
       await this.#context.server.request(
-        "create_world", {name, experiment_json: this.#text.value, ...(seed ? {seed: BigInt(seed)} : {})});
+        "create_world",
+        {name, experiment_json: this.#text.value, ...(seed ? {seed: BigInt(seed)} : {}), ...population});
       this.#dialog.close();
       if (this.#beside.checked) {
         this.#context.show_beside(name);

@@ -37,7 +37,8 @@ export class RunPanel implements Panel {
     const {notify} = context;
     this.#one = guarded_button("One tick", notify, () => this.#attempt(() => context.world().control.step(1)));
     this.#step = guarded_button(
-      "Step ticks", notify, () => this.#with_number("ticks", this.#ticks, (ticks) => context.world().control.step(ticks)));
+      "Step ticks", notify,
+      () => this.#with_number("ticks", this.#ticks, (ticks) => context.world().control.step(ticks)));
     this.#run = guarded_button(
       "Run generations", notify,
       () => this.#with_number("generations", this.#generations, (count) => context.world().control.run(count)));
@@ -61,8 +62,9 @@ export class RunPanel implements Panel {
     if (!info) {
       set_text(this.#state, "No world is open yet.");
     } else {
-      let state = world.control.at_end ? "end of the replay" :
-                                 state_word(world.control.state, server.storage, info.awaited_fitness !== undefined);
+      let state = world.control.at_end ?
+        "end of the replay" :
+        state_word(world.control.state, server.storage, info.awaited_fitness !== undefined);
       if (world.control.state === "RUN_STATE_TERMINATED") {
         state += `: ${outcome_words(info.outcome)}`;
       } else if (info.run_until_generation !== undefined && world.control.state === "RUN_STATE_RUNNING") {
@@ -80,8 +82,8 @@ export class RunPanel implements Panel {
     const generation = world.snapshot ? `generation ${with_separators(world.snapshot.generation)}, ` : "";
     set_text(
       this.#where, info ? `${generation}tick ${with_separators(world.feed.tick)}, seed ${String(info.seed ?? 0)}` : "");
-    const why_run =
-      !info ? "No world is open." : server.why_not("run", world.shown) || (world.control.is_over ? "The run has ended." : "");
+    const why_run = !info ? "No world is open." :
+                            server.why_not("run", world.shown) || (world.control.is_over ? "The run has ended." : "");
     set_allowed(this.#one, why_run, "Runs one tick, then pauses (.).");
     set_allowed(this.#step, why_run, "Runs this many ticks, then pauses.");
     set_allowed(this.#run, why_run, "Runs this many generations to their end, then waits.");

@@ -6,8 +6,10 @@ import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 
 import type {Message} from "../core/messages";
-import {name_problem, NewWorldDialog, unused_name} from "./new_world";
+import {name_problem, unused_name} from "../world/names";
 import type {Panel, PanelContext} from "../world/panel_context";
+
+import {update_rows} from "./rows";
 
 const poll_ms = 1000;
 
@@ -32,7 +34,6 @@ export class WorldsPanel implements Panel {
     h("input", {class: "field grow", "aria-label": "Name of the new world", maxlength: 64, spellcheck: "false"});
   #fork_from = h("p", {});
   #fork_error = h("p", {class: "error", role: "alert"});
-  #dialog: NewWorldDialog|null = null;
   #statistics: Message|null = null;
   #polled = 0;
   #pending = false;
@@ -94,23 +95,27 @@ export class WorldsPanel implements Panel {
                                          act: () => this.#context.world().show(name),
                                          cells: ["damaged", "", "", ""]
                                        }));
-    rows(this.#worlds, [
-      ...server.worlds.filter((one) => !one.replay || one.name === world.name).map((info) => {
-        const live = info.name === world.shown && world.snapshot;
-        return {
-          name: info.name,
-          chosen: info.name === world.name,
-          act: () => this.#context.world().show(info.name),
-          cells: [
-            state_word(live ? world.control.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
-            with_separators(live ? live.generation : info.generation ?? 0),
-            with_separators(live ? live.tick : info.tick ?? 0),
-            speed_text(info.speed) + (info.slowed ? " (slower)" : "")
-          ],
-        };
-      }),
-      ...damaged
-    ]);
+    update_rows(
+      this.#worlds,
+      [
+        ...server.worlds.filter((one) => !one.replay || one.name === world.name).map((info) => {
+          const live = info.name === world.shown && world.snapshot;
+          return {
+            name: info.name,
+            chosen: info.name === world.name,
+            act: () => this.#context.world().show(info.name),
+            cells: [
+              state_word(
+                live ? world.control.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
+              with_separators(live ? live.generation : info.generation ?? 0),
+              with_separators(live ? live.tick : info.tick ?? 0),
+              speed_text(info.speed) + (info.slowed ? " (slower)" : "")
+            ],
+          };
+        }),
+        ...damaged
+      ],
+      1);
     const why_create = server.why_not("create_world");
     set_allowed(this.#create, why_create, "Creates a world, beside those that exist.");
     set_allowed(
@@ -132,7 +137,7 @@ export class WorldsPanel implements Panel {
         this.#islands_title, world.is_replay ? `Islands of the replay of ${world.name}` : `Islands of ${world.name}`);
       const of = (all: Message[]|undefined, island: number): Message|undefined =>
         all?.find((one) => (one.island ?? 0) === island);
-      rows(this.#islands, Array.from({length: count}, (_, i) => {
+      update_rows(this.#islands, Array.from({length: count}, (_, i) => {
         const live = of(statistics.live, i), last = of(statistics.last, i);
         return {
           name: `island ${i}`,
@@ -143,11 +148,12 @@ export class WorldsPanel implements Panel {
             live ? tenths(live.health_mean ?? 0) : "", last ? tenths(last.fitness_best ?? 0) : ""
           ],
         };
-      }));
+      }), 0);
     }
     this.#poll();
   }
 
+  /** subject: {create: true} or {fork: true} */
   show(subject: {[key: string]: unknown}): void {
     if (subject.create) {
       this.#open_dialog();
@@ -177,8 +183,8 @@ export class WorldsPanel implements Panel {
   }
 
   #open_dialog(): void {
-    this.#dialog ??= new NewWorldDialog(this.#context);
-    this.#dialog.open();
+    void this.#context.attempt(
+      async () => await (await import("./loaded_later")).new_world_dialog(this.#context).open());
   }
 
   #ask_delete(): void {
@@ -230,29 +236,4 @@ export class WorldsPanel implements Panel {
     form.hidden = true;
     button.focus();
   }
-}
-
-/** Updates rows of a table whose first cell is a button that chooses the row. */
-function rows(body: HTMLElement, wanted: {name: string; chosen: boolean; act: () => void; cells: string[]}[]): void {
-  while (body.children.length > wanted.length) {
-    body.lastElementChild!.remove();
-  }
-  wanted.forEach(({name, chosen, cells, act}, i) => {
-    let row = body.children[i] as HTMLElement | undefined;
-    if (!row) {
-      row =
-        h("tr", {}, h("th", {scope: "row"}, h("button", {type: "button", class: "link"})),
-          ...cells.map((_, column) => h("td", {class: column > 0 || cells.length < 4 ? "number" : null})));
-      body.append(row);
-    }
-    const button = row.querySelector("button")!;
-    set_text(button, name);
-    button.onclick = act;
-    if (chosen) {
-      row.setAttribute("aria-current", "true");
-    } else {
-      row.removeAttribute("aria-current");
-    }
-    cells.forEach((cell, column) => set_text(row!.children[column + 1]!, cell));
-  });
 }

@@ -1,12 +1,15 @@
 // figures: the plots of one history, or of one history compared with another. Pure functions.
-import type {HistoryTable, Island} from "./history_table";
+import {plot_texts} from "../texts/plot";
+import {figure_texts as texts} from "../texts/plots_panel";
+import type {AccountPart, Column, GenePart, HistoryTable, Island} from "./history_table";
+import {thickness_default} from "./plot_content";
 import type {Marks, PlotContent, Series, SeriesColour} from "./plot_content";
 import {compare_dash, histogram, range_of, running_mean} from "./plot_layout";
 import type {Mark, Numbers} from "./plot_layout";
 
-export type Quantity = "Fitness"|"Genes"|"Selection"|"Diversity"|"Survivors"|"Deaths"|"Food";
+export type Quantity = "fitness"|"genes"|"selection"|"diversity"|"survivors"|"deaths"|"food";
 export const quantities: readonly Quantity[] =
-  ["Fitness", "Genes", "Selection", "Diversity", "Survivors", "Deaths", "Food"];
+  ["fitness", "genes", "selection", "diversity", "survivors", "deaths", "food"];
 
 /** The maximum number of genes in one plot. */
 export const genes_in_plot_max = 12;
@@ -27,20 +30,24 @@ interface Style {
 }
 const plain: Style = {
   dash: [],
-  thickness: 1.8
-},
-             thick: Style = {
-               dash: [],
-               thickness: 2.8
-             },
-             dotted: Style = {
-               dash: [2, 2.5],
-               thickness: 1.8
-             },
-             thin: Style = {
-               dash: [8, 3, 2, 3],
-               thickness: 1.2
-             };
+  thickness: thickness_default
+};
+const thick: Style = {
+  dash: [],
+  thickness: 2.8
+};
+const dashed: Style = {
+  dash: [9, 3],
+  thickness: thickness_default
+};
+const dotted: Style = {
+  dash: [2, 2.5],
+  thickness: thickness_default
+};
+const thin: Style = {
+  dash: [8, 3, 2, 3],
+  thickness: 1.2
+};
 
 const gene_colours: readonly SeriesColour[] = ["blue", "orange", "green", "purple", "vermilion", "sky"];
 const gene_dashes: readonly(readonly number[])[] = [[], [9, 3], [2, 2.5], [9, 3, 2, 3], [4.5, 2], [14, 3, 2, 3, 2, 3]];
@@ -51,11 +58,6 @@ function gene_style(index: number): Style&{colour: SeriesColour} {
     dash: gene_dashes[(index + 3 * round) % gene_dashes.length]!,
     thickness: round % 2 === 1 ? 1.2 : 2
   };
-}
-
-/** "mean of 10" */
-export function running_mean_name(window: number): string {
-  return `mean of ${window}`;
 }
 
 class FigureBuilder {
@@ -76,34 +78,60 @@ class FigureBuilder {
     this.content = {
       title: "",
       series: [],
-      x_label: "generation",
+      x_label: texts.generation,
       y_label: "",
       marks,
-      smoothed: running_mean_name(window),
+      smoothed: plot_texts.mean_of(window),
       counted_x: true
     };
   }
 
-  /** Adds a line for a column of the subject; if `compared`, also one for the same column of the other subject. */
-  line(
-    column: string, name: string, colour: SeriesColour, style: Style, compared: boolean, whole = false,
-    other_column: string|null = column): void {
-    const is_compared =
-      this.#other !== null && compared && other_column !== null && is_known(column_of(this.#other, other_column));
-    this.#add_line(this.#subject, column, name, colour, is_compared ? {...style, dash: []} : style, whole, true);
-    if (this.#other !== null && is_compared) {
+  /** Adds a line for a column of the subject.
+   *
+   *  compared      whether the same column of the other subject gets a line, too
+   *  whole         the numbers are counts
+   *  other_column  the column of the other subject, if its name differs; null: it has no such column */
+  line(column: Column, name: string, colour: SeriesColour, style: Style, {
+    compared,
+    whole = false,
+    other_column = column
+  }: {compared: boolean; whole?: boolean; other_column?: Column | null}): void {
+    const other = this.#other;
+    const is_compared = other !== null && compared && other_column !== null && is_known(column_of(other, other_column));
+    this.#add_line(this.#subject, column, {name, colour, ...style, ...(is_compared ? {dash: []} : {}), whole});
+    if (is_compared) {
       this.#add_line(
-        this.#other, other_column, `${name}, ${this.#other.name}`, colour, {...style, dash: compare_dash}, whole,
-        false);
+        other, other_column,
+        {name: texts.series_of(name, other.name), colour, ...style, dash: compare_dash, whole, in_legend: false});
       this.content.solid = this.#subject.name;
-      this.content.dashed = this.#other.name;
+      this.content.dashed = other.name;
     }
   }
 
-  /** Adds a band of one standard deviation on either side of the mean, as far as it is within the range of the values. */
-  band(prefix: string, least: string, greatest: string, colour: SeriesColour): void {
-    const mean = column_of(this.#subject, `${prefix}mean`), deviation = column_of(this.#subject, `${prefix}deviation`);
-    const min = column_of(this.#subject, least), max = column_of(this.#subject, greatest);
+  /** Adds a line for a number of a gene, if the subject has this gene. */
+  gene_line(
+    gene: string, part: GenePart|AccountPart, name: string, colour: SeriesColour, style: Style,
+    compared: boolean): void {
+    const column = gene_column(this.#subject, gene, part);
+    if (column !== null) {
+      const other_column = this.#other === null ? null : gene_column(this.#other, gene, part);
+      this.line(column, name, colour, style, {compared, other_column});
+    }
+  }
+
+  /** Adds a line for the same number of each of several genes. */
+  gene_lines(genes: readonly string[], part: GenePart|AccountPart): void {
+    genes.forEach((gene, i) => {
+      const {colour, ...style} = gene_style(i);
+      this.gene_line(gene, part, gene, colour, style, true);
+    });
+  }
+
+  /** Adds a band of one standard deviation on either side of the mean, as far as it is within the range of the
+   *  values. */
+  band(of: {mean: Column; deviation: Column; least: Column; greatest: Column}, colour: SeriesColour): void {
+    const mean = column_of(this.#subject, of.mean), deviation = column_of(this.#subject, of.deviation);
+    const min = column_of(this.#subject, of.least), max = column_of(this.#subject, of.greatest);
     if (!is_known(mean)) {
       return;
     }
@@ -111,7 +139,7 @@ class FigureBuilder {
           high = mean.map((number, i) => Math.min(number + deviation[i]!, max[i]!));
     this.content.series.push({
       kind: "band",
-      name: "± 1 standard deviation",
+      name: texts.deviation,
       colour,
       x: column_of(this.#subject, "generation"),
       y: running_mean(high, this.#window),
@@ -119,7 +147,7 @@ class FigureBuilder {
     });
   }
 
-  stack(column: string, name: string, colour: SeriesColour): void {
+  stack(column: Column, name: string, colour: SeriesColour): void {
     const y = column_of(this.#subject, column);
     if (is_known(y)) {
       this.content.series.push({
@@ -134,30 +162,27 @@ class FigureBuilder {
   }
 
   /** Adds a dashed line over the stacks for a column of the other subject. */
-  compare(column: string, name: string, colour: SeriesColour): void {
+  compare(column: Column, name: string, colour: SeriesColour): void {
     if (this.#other !== null) {
       this.#add_line(
-        this.#other, column, this.#named(name, this.#other), colour, {dash: compare_dash, thickness: 1.8}, true, true);
+        this.#other, column, {...plain, name: this.#named(name, this.#other), colour, dash: compare_dash, whole: true});
     }
   }
 
   #named(name: string, subject: Subject): string {
-    return this.#other === null ? name : `${name}, ${subject.name}`;
+    return this.#other === null ? name : texts.series_of(name, subject.name);
   }
 
-  #add_line(
-    subject: Subject, column: string, name: string, colour: SeriesColour, style: Style, whole: boolean,
-    in_legend: boolean): void {
+  #add_line(subject: Subject, column: Column, line: Omit<Series, "kind"|"x"|"y">): void {
     const raw = column_of(subject, column);
     if (is_known(raw)) {
-      const series:
-        Series = {kind: "line", name, colour, ...style, x: column_of(subject, "generation"), y: raw, whole, in_legend};
+      const series: Series = {kind: "line", ...line, x: column_of(subject, "generation"), y: raw};
       this.content.series.push(this.#window > 1 ? {...series, y: running_mean(raw, this.#window), raw} : series);
     }
   }
 }
 
-function column_of(subject: Subject, name: string): number[] {
+function column_of(subject: Subject, name: Column): number[] {
   return subject.table.column(subject.island, name);
 }
 
@@ -172,118 +197,121 @@ function starts_at_zero(subject: Subject): boolean {
 }
 
 /** Returns the name of a column of a gene; null if the subject has no such gene. */
-function gene_column(subject: Subject, gene: string, part: string): string|null {
+function gene_column(subject: Subject, gene: string, part: GenePart|AccountPart): Column|null {
   const index = subject.gene_names.indexOf(gene);
   return index >= 0 ? `gene:${index}:${part}` : null;
 }
 
-/** Builds the plot of a quantity.
- *
- *  genes   the genes whose means, or whose selection, are plotted together
- *  gene    the one gene that is shown instead; empty: all of `genes`
- *  other   the compared history; null: none. If it has no island of this number, all its islands together are shown
- *  window  generations of the running mean of each line and band; 1: none */
-export function figure_of(
-  quantity: Quantity, subject: Subject, other: Subject|null, genes: readonly string[], gene: string,
-  window: number): PlotContent {
-  const make = new FigureBuilder(subject, other, window), {content} = make;
-  const is_weight = (gene || genes[0] || "").includes("<");
-  const gene_line =
-    (of: string, part: string, name: string, colour: SeriesColour, style: Style, compared: boolean): void => {
-      const column = gene_column(subject, of, part);
-      if (column !== null) {
-        make.line(column, name, colour, style, compared, false, other === null ? null : gene_column(other, of, part));
-      }
-    };
-  const gene_lines = (part: string): void => genes.forEach((each, i) => {
-    const {colour, ...style} = gene_style(i);
-    gene_line(each, part, each, colour, style, true);
-  });
-  switch (quantity) {
-    case "Fitness":
-      content.title = "Fitness";
-      content.y_label = "fitness";
-      content.from_zero = starts_at_zero(subject);
-      make.line("fitness_best", "best", "vermilion", plain, true);
-      make.line("fitness_mean", "mean", "blue", thick, true);
-      make.line("fitness_median", "median", "sky", dotted, false);
-      make.line("fitness_worst", "worst", "grey", thin, false);
-      make.band("fitness_", "fitness_worst", "fitness_best", "blue");
+/** What figure_of() plots. */
+export interface FigureRequest {
+  quantity: Quantity;
+  subject: Subject;
+  other: Subject|null; // the compared history. If it has no island of this number, all its islands together are shown
+  genes: readonly string[]; // whose means, or whose selection, are plotted together
+  gene: string; // the one gene that is shown instead; empty: all of `genes`
+  window: number; // generations of the running mean of each line and band; 1: none
+}
+
+/** Builds the plot of a quantity. */
+export function figure_of(request: FigureRequest): PlotContent {
+  const make = new FigureBuilder(request.subject, request.other, request.window), {content} = make;
+  switch (request.quantity) {
+    case "fitness":
+      build_fitness(make, request.subject);
       break;
-    case "Genes":
-      content.y_label = is_weight ? "weight" : "gene units";
-      if (gene === "") {
-        content.title = "Means of the genes";
-        gene_lines("mean");
-      } else {
-        content.title = `Gene ${gene}`;
-        gene_line(gene, "mean", "mean", "green", thick, true);
-        gene_line(gene, "max", "greatest", "grey", thin, false);
-        gene_line(gene, "min", "least", "grey", dotted, false);
-        const column = gene_column(subject, gene, "");
-        if (column !== null) {
-          make.band(column, `${column}min`, `${column}max`, "green");
-        }
-      }
+    case "genes":
+      build_genes(make, request);
       break;
-    case "Selection":
-      content.y_label = is_weight ? "weight per generation" : "gene units per generation";
-      if (gene === "") {
-        content.title = "Selection of the genes";
-        gene_lines("selection");
-      } else { // the change is the sum of the other series
-        content.title = `Causes of change in the mean of ${gene}`;
-        gene_line(gene, "change", "change", "grey", thick, true);
-        gene_line(gene, "selection", "selection", "blue", plain, true);
-        gene_line(gene, "transmission", "transmission", "orange", {dash: [9, 3], thickness: 1.8}, true);
-        gene_line(gene, "migration", "migration", "purple", dotted, true);
-      }
+    case "selection":
+      build_selection(make, request);
       break;
-    case "Diversity":
-      content.title = "Diversity";
-      content.y_label = "mean standard deviation, as a share of the gene's range";
-      content.from_zero = true;
-      make.line("diversity", "diversity", "purple", plain, true);
+    case "diversity":
+      Object.assign(content, {title: texts.diversity.title, y_label: texts.diversity.y, from_zero: true});
+      make.line("diversity", texts.diversity.diversity, "purple", plain, {compared: true});
       break;
-    case "Survivors":
-      content.title = "Alive at the end";
-      content.y_label = "organisms";
-      content.from_zero = true;
-      make.line("alive_count", "alive at the end", "green", plain, true, true);
-      make.line("organism_count", "born", "grey", thin, false, true);
+    case "survivors":
+      Object.assign(content, {title: texts.survivors.title, y_label: texts.survivors.y, from_zero: true});
+      make.line("alive_count", texts.survivors.alive, "green", plain, {compared: true, whole: true});
+      make.line("organism_count", texts.survivors.born, "grey", thin, {compared: false, whole: true});
       break;
-    case "Deaths":
-      content.title = "Causes of death";
-      content.y_label = "organisms";
-      content.from_zero = true;
-      make.stack("starved_count", "starved", "orange");
-      make.stack("poisoned_count", "poisoned", "vermilion");
-      make.stack("alive_count", "alive at the end", "green");
-      make.compare("starved_count", "starved", "sky");
-      make.compare("poisoned_count", "poisoned", "blue");
+    case "deaths":
+      Object.assign(content, {title: texts.deaths.title, y_label: texts.deaths.y, from_zero: true});
+      make.stack("starved_count", texts.deaths.starved, "orange");
+      make.stack("poisoned_count", texts.deaths.poisoned, "vermilion");
+      make.stack("alive_count", texts.deaths.alive, "green");
+      make.compare("starved_count", texts.deaths.starved, "sky");
+      make.compare("poisoned_count", texts.deaths.poisoned, "blue");
       break;
-    case "Food":
-      content.title = "Food and poison eaten";
-      content.y_label = "items per generation";
-      content.from_zero = true;
-      make.line("food_eaten", "food eaten", "green", plain, true, true);
-      make.line("poison_eaten", "poison eaten", "vermilion", {dash: [9, 3], thickness: 1.8}, true, true);
+    case "food":
+      Object.assign(content, {title: texts.food.title, y_label: texts.food.y, from_zero: true});
+      make.line("food_eaten", texts.food.food, "green", plain, {compared: true, whole: true});
+      make.line("poison_eaten", texts.food.poison, "vermilion", dashed, {compared: true, whole: true});
       break;
   }
   return content;
 }
 
-/** Returns those of the genes that have changed most, the most changed first: in their mean or, for Selection, by selection. If there are at
- *  most `count_max`, returns all of them in their order. */
+function build_fitness(make: FigureBuilder, subject: Subject): void {
+  const {title, y, best, mean, median, worst} = texts.fitness;
+  Object.assign(make.content, {title, y_label: y, from_zero: starts_at_zero(subject)});
+  make.line("fitness_best", best, "vermilion", plain, {compared: true});
+  make.line("fitness_mean", mean, "blue", thick, {compared: true});
+  make.line("fitness_median", median, "sky", dotted, {compared: false});
+  make.line("fitness_worst", worst, "grey", thin, {compared: false});
+  make.band(
+    {mean: "fitness_mean", deviation: "fitness_deviation", least: "fitness_worst", greatest: "fitness_best"}, "blue");
+}
+
+function build_genes(make: FigureBuilder, {subject, genes, gene}: FigureRequest): void {
+  const {title, of_one, y, y_of_weights, mean, greatest, least} = texts.genes;
+  make.content.y_label = is_weight(gene || genes[0]) ? y_of_weights : y;
+  if (gene === "") {
+    make.content.title = title;
+    make.gene_lines(genes, "mean");
+    return;
+  }
+  make.content.title = of_one(gene);
+  make.gene_line(gene, "mean", mean, "green", thick, true);
+  make.gene_line(gene, "max", greatest, "grey", thin, false);
+  make.gene_line(gene, "min", least, "grey", dotted, false);
+  const index = subject.gene_names.indexOf(gene);
+  if (index >= 0) {
+    const of = (part: GenePart): Column => `gene:${index}:${part}`;
+    make.band({mean: of("mean"), deviation: of("deviation"), least: of("min"), greatest: of("max")}, "green");
+  }
+}
+
+function build_selection(make: FigureBuilder, {genes, gene}: FigureRequest): void {
+  const {title, of_one, y, y_of_weights, change, selection, transmission, migration} = texts.selection;
+  make.content.y_label = is_weight(gene || genes[0]) ? y_of_weights : y;
+  if (gene === "") {
+    make.content.title = title;
+    make.gene_lines(genes, "selection");
+    return;
+  }
+  make.content.title = of_one(gene); // the change is the sum of the other series
+  make.gene_line(gene, "change", change, "grey", thick, true);
+  make.gene_line(gene, "selection", selection, "blue", plain, true);
+  make.gene_line(gene, "transmission", transmission, "orange", dashed, true);
+  make.gene_line(gene, "migration", migration, "purple", dotted, true);
+}
+
+/** Whether a gene is a weight of a network: "turn<hidden3". */
+function is_weight(gene: string|undefined): boolean {
+  return gene?.includes("<") ?? false;
+}
+
+/** Returns those of the genes that have changed most, the most changed first: in their mean or, for the quantity
+ *  "selection", by selection. If there are at most `count_max`, returns all of them in their order. */
 export function most_changed(
   quantity: Quantity, subject: Subject, genes: readonly string[], count_max = genes_in_plot_max): string[] {
   if (genes.length <= count_max) {
     return [...genes];
   }
   const change_of = (gene: string): number => {
-    const column = gene_column(subject, gene, quantity === "Selection" ? "selection" : "mean");
+    const column = gene_column(subject, gene, quantity === "selection" ? "selection" : "mean");
     const numbers = column === null ? [] : column_of(subject, column);
-    const change = quantity === "Selection" ?
+    const change = quantity === "selection" ?
       numbers.reduce((sum, number) => (Number.isFinite(number) ? sum + number : sum), 0) :
       numbers.length > 0 ? numbers[numbers.length - 1]! - numbers[0]! :
                            0;
@@ -301,7 +329,7 @@ export function histogram_of(gene: string, values: Numbers): PlotContent {
   const width = (shown.max - shown.min) / count;
   const series: Series[] = values.length === 0 ? [] : [{
     kind: "bars",
-    name: "organisms",
+    name: texts.values.organisms,
     colour: "green",
     in_legend: false,
     bar_width: width,
@@ -309,15 +337,23 @@ export function histogram_of(gene: string, values: Numbers): PlotContent {
     x: Array.from({length: count}, (_, i) => shown.min + (i + 0.5) * width),
     y: histogram(values, shown, count),
   }];
-  return {title: `Values of ${gene}`, series, x_label: gene, y_label: "organisms", from_zero: true, empty: "…"};
+  return {
+    title: texts.values.title(gene),
+    series,
+    x_label: gene,
+    y_label: texts.values.y,
+    from_zero: true,
+    empty: texts.values.none
+  };
 }
 
-/** Returns marks where all organisms of the history died, unless this happened in more than a tenth of the generations. */
+/** Returns marks where all organisms of the history died, unless this happened in more than a tenth of the
+ *  generations. */
 export function extinctions(table: HistoryTable, island: Island): (Mark&{label: string})[] {
   const generation = table.column(island, "generation"), alive = table.column(island, "alive_count"),
         born = table.column(island, "organism_count");
   const found = generation.filter((_, i) => alive[i] === 0 && born[i]! > 0);
   return found.length * 10 > generation.length ?
     [] :
-    found.map((x) => ({x, text: `generation ${x}: all organisms died before its end`, label: "extinction"}));
+    found.map((x) => ({x, text: texts.all_died(x), label: texts.extinction}));
 }

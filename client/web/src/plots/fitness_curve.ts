@@ -4,6 +4,7 @@ import type {Series, SeriesColour} from "./plot_content";
 import {running_mean} from "./plot_layout";
 import {marks_of} from "./change_marks";
 import {HistoryTable} from "./history_table";
+import type {Column} from "./history_table";
 import {significant} from "../texts/numbers";
 import {plot_texts} from "../texts/plot";
 import type {ViewedWorld} from "../world/world";
@@ -36,7 +37,7 @@ export class FitnessCurve {
     this.#changes = world.history.changes;
     this.#change_count = world.history.changes.length;
     const x = this.#table.column(null, "generation");
-    const line = (name: string, column: string, colour: SeriesColour, dash: number[]): Series => {
+    const line = (name: string, column: Column, colour: SeriesColour, dash: number[]): Series => {
       const raw = this.#table.column(null, column);
       return {
         kind: "line",

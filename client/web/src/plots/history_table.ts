@@ -1,28 +1,33 @@
 // HistoryTable: the GenerationStatistics of a run as columns, for each island and for all islands together.
 //
-// Columns are computed when they are needed, and extended when generations are added. A column is named "generation", "fitness_best" or
-// as any other number of GenerationStatistics, or "gene:INDEX:PART" with the parts mean, deviation, min, max, selection, transmission,
-// migration and change. For all islands together, means are weighted by the number of organisms, and deviations are those of the
-// combined population. The median of all islands is NaN: it does not follow from the medians of the islands.
-import type {Message} from "../core/messages";
+// Columns are computed when they are needed, and extended when generations are added. For all islands together, means
+// are weighted by the number of organisms, and deviations are those of the combined population. The median of all
+// islands is NaN: it does not follow from the medians of the islands.
+import type {GeneAccount, GenerationStatistics, GeneStatistics} from "../core/protocol";
 
 export type Island = number|null; // null: all islands together
 
-const sums = new Set([
+/** The numbers of GenerationStatistics. */
+export type NumberColumn = Exclude<keyof GenerationStatistics, "genes">;
+export type GenePart = Exclude<keyof GeneStatistics, "account">;
+export type AccountPart = keyof GeneAccount;
+/** A column of a table: "fitness_best", "gene:0:mean". */
+export type Column = NumberColumn|`gene:${number}:${GenePart|AccountPart}`;
+
+const sums = new Set<Column>([
   "organism_count", "alive_count", "starved_count", "poisoned_count", "food_eaten", "poison_eaten", "clamp_count",
   "too_fast_count", "speed_limit_count"
 ]);
-const greatest = new Set(["generation", "end_tick", "simulated_s", "fitness_best"]);
-const account_parts = new Set(["selection", "transmission", "migration", "change"]);
+const greatest = new Set<Column>(["generation", "end_tick", "simulated_s", "fitness_best"]);
 
 export class HistoryTable {
   revision = 0; // changes whenever the table changes
   island_count = 0;
   gene_count = 0;
-  #rows: Message[][] = []; // by generation, then by island; entries of a missing island are absent
+  #rows: GenerationStatistics[][] = []; // by generation, then by island; entries of a missing island are absent
   #columns = new Map<string, number[]>();
   #taken_count = 0; // messages of the history that was taken last
-  #last: Message|undefined;
+  #last: GenerationStatistics|undefined;
 
   get generation_count(): number {
     return this.#rows.length;
@@ -36,9 +41,9 @@ export class HistoryTable {
     ++this.revision;
   }
 
-  /** Takes a history, ordered by generation. Reads only the new messages if the rest is the same as before, or lacks the first generations,
-   *  which the server no longer keeps. */
-  set_history(history: readonly Message[]): void {
+  /** Takes a history, ordered by generation. Reads only the new messages if the rest is the same as before, or lacks
+   *  the first generations, which the server no longer keeps. */
+  set_history(history: readonly GenerationStatistics[]): void {
     const dropped = this.#taken_count === 0 ? 0 : this.#leading_count(history[0]);
     const known = this.#taken_count - dropped;
     if (dropped < 0 || known > history.length || (known > 0 && history[known - 1] !== this.#last)) {
@@ -54,11 +59,11 @@ export class HistoryTable {
     this.#last = history[history.length - 1];
   }
 
-  /** Returns the number of messages in the generations before that of `first`; -1 if the table does not contain `first`. */
-  #leading_count(first: Message|undefined): number {
+  /** Returns the number of messages in the generations before that of `first`; -1 if the table does not contain it. */
+  #leading_count(first: GenerationStatistics|undefined): number {
     let count = 0;
     for (const row of this.#rows) {
-      if (row.includes(first as Message)) {
+      if (first !== undefined && row.includes(first)) {
         return count;
       }
       count += row.filter((one) => one !== undefined).length;
@@ -90,19 +95,20 @@ export class HistoryTable {
     ++this.revision;
   }
 
-  /** Adds statistics, ordered by generation. Statistics of a generation that is known replace it; earlier ones are inserted. */
-  add(statistics: readonly Message[]): void {
+  /** Adds statistics, ordered by generation. Statistics of a generation that is known replace it; earlier ones are
+   *  inserted. */
+  add(statistics: readonly GenerationStatistics[]): void {
     for (const one of statistics) {
-      const generation = Number(one.generation ?? 0), island = Number(one.island ?? 0);
+      const generation = one.generation ?? 0, island = one.island ?? 0;
       let place = this.#rows.length;
       while (place > 0 && this.#generation_at(place - 1) > generation) {
         --place;
       }
       if (place > 0 && this.#generation_at(place - 1) === generation) {
-        (this.#rows[place - 1] as Message[])[island] = one;
+        this.#rows[place - 1]![island] = one;
         this.#shorten(place - 1);
       } else {
-        const row: Message[] = [];
+        const row: GenerationStatistics[] = [];
         row[island] = one;
         this.#rows.splice(place, 0, row);
         this.#shorten(place);
@@ -114,7 +120,7 @@ export class HistoryTable {
   }
 
   /** Returns a column; of all islands together if there is no such island. The array is extended by later calls. */
-  column(island: Island, name: string): number[] {
+  column(island: Island, name: Column): number[] {
     const which = island !== null && island < this.island_count ? island : null;
     const key = `${which ?? "all"} ${name}`;
     let column = this.#columns.get(key);
@@ -123,17 +129,17 @@ export class HistoryTable {
       this.#columns.set(key, column);
     }
     for (let i = column.length; i < this.#rows.length; ++i) {
-      const row = this.#rows[i] as Message[];
+      const row = this.#rows[i]!;
       column.push(
         which === null             ? all_islands(row, name) :
           row[which] === undefined ? (name === "generation" ? this.#generation_at(i) : NaN) :
-                                     number_of(row[which] as Message, name));
+                                     number_of(row[which], name));
     }
     return column;
   }
 
   #generation_at(index: number): number {
-    return Number((this.#rows[index] as Message[]).find((one) => one !== undefined)?.generation ?? 0);
+    return this.#rows[index]!.find((one) => one !== undefined)?.generation ?? 0;
   }
 
   /** Forgets the numbers of the columns from this row on. */
@@ -145,28 +151,38 @@ export class HistoryTable {
 }
 
 /** Returns a number of one island; NaN if it is unknown. Fields of the value 0 are absent in messages. */
-function number_of(statistics: Message, name: string): number {
-  if (!name.startsWith("gene:")) {
-    return Number(statistics[name] ?? 0);
+function number_of(statistics: GenerationStatistics, name: Column): number {
+  const gene_part = part_of(name);
+  if (gene_part === null) {
+    return statistics[name as NumberColumn] ?? 0;
   }
-  const [, index, part] = name.split(":") as [string, string, string];
-  const gene: Message|undefined = statistics.genes?.[Number(index)];
-  if (gene === undefined) {
-    return NaN;
+  const {index, part} = gene_part, gene = statistics.genes?.[index];
+  switch (part) {
+    case "mean":
+    case "deviation":
+    case "min":
+    case "max":
+      return gene === undefined ? NaN : gene[part] ?? 0;
+    default:
+      return gene?.account === undefined ? NaN : gene.account[part] ?? 0;
   }
-  if (account_parts.has(part)) {
-    return gene.account === undefined ? NaN : Number(gene.account[part] ?? 0);
-  }
-  return Number(gene[part] ?? 0);
 }
 
-function all_islands(row: readonly Message[], name: string): number {
+/** Returns what a column shows of a gene; null if it is not about a gene. */
+function part_of(name: Column): {index: number; part: GenePart | AccountPart}|null {
+  if (!name.startsWith("gene:")) {
+    return null;
+  }
+  const [, index, part] = name.split(":");
+  return {index: Number(index), part: part as GenePart | AccountPart};
+}
+
+function all_islands(row: readonly GenerationStatistics[], name: Column): number {
   const islands = row.filter((one) => one !== undefined);
   if (islands.length === 1) {
-    return number_of(islands[0] as Message, name);
+    return number_of(islands[0]!, name);
   }
-  const numbers = islands.map((one) => number_of(one, name));
-  const part = name.startsWith("gene:") ? name.slice(name.lastIndexOf(":") + 1) : "";
+  const numbers = islands.map((one) => number_of(one, name)), part = part_of(name)?.part;
   if (sums.has(name)) {
     return numbers.reduce((sum, number) => sum + number, 0);
   }
@@ -179,15 +195,14 @@ function all_islands(row: readonly Message[], name: string): number {
   if (name === "fitness_median" || name === "best_organism") {
     return NaN;
   }
-  const counts = islands.map((one) => Number(one.organism_count ?? 0));
+  const counts = islands.map((one) => one.organism_count ?? 0);
   const total = counts.reduce((sum, count) => sum + count, 0);
-  const mean = (of: (i: number) => number) =>
-    counts.reduce((sum, count, i) => sum + (total > 0 ? count / total : 1 / counts.length) * of(i), 0);
+  const mean = (of: readonly number[]): number =>
+    counts.reduce((sum, count, i) => sum + (total > 0 ? count / total : 1 / counts.length) * of[i]!, 0);
   if (name !== "fitness_deviation" && part !== "deviation") {
-    return mean((i) => numbers[i] as number);
+    return mean(numbers);
   }
-  const means = islands.map(
-    (one) => number_of(one, name.replace(/deviation$/, "mean"))); // variance within the islands and between them
-  const centre = mean((i) => means[i] as number);
-  return Math.sqrt(mean((i) => (numbers[i] as number) ** 2 + ((means[i] as number) - centre) ** 2));
+  const means = islands.map((one) => number_of(one, name.replace(/deviation$/, "mean") as Column));
+  const centre = mean(means); // the variance is that within the islands and between them
+  return Math.sqrt(mean(numbers.map((number, i) => number ** 2 + (means[i]! - centre) ** 2)));
 }

@@ -4,9 +4,11 @@ import {HistoryTable} from "./history_table";
 
 import type {Mark} from "./plot_layout";
 import type {Server} from "../world/server";
-import type {Message} from "../core/messages";
+import {kind_of, none_left} from "../core/messages";
+import type {AppliedChange, Event, GenerationStatistics} from "../core/protocol";
 
 const missed_wait_ms = 1000; // after the server has dropped events
+const generations_kept_default = 10_000;
 
 export class OtherHistory {
   readonly table = new HistoryTable();
@@ -15,7 +17,8 @@ export class OtherHistory {
   #end: () => void;
   #timer = 0;
   #number = 0; // of the last reading
-  #newer: Message[]|null = null; // statistics that arrived while the history is read; null: it is not being read
+  #newer: GenerationStatistics[]|null =
+    null; // statistics that arrived while the history is read; null: it is not being read
 
   /** on_change: called after each change. */
   readonly #server: Server;
@@ -38,18 +41,49 @@ export class OtherHistory {
     this.#end();
   }
 
-  #take(event: Message): void {
-    if (event.events_dropped) {
-      this.#read_later();
-    } else if (event.world === this.world && (event.world_reset || event.world_created || event.parameters_changed)) {
-      void this.#read();
-    } else if (event.world === this.world && event.generation_finished) {
-      const statistics: Message[] = event.generation_finished.statistics ?? [];
-      this.#newer?.push(...statistics);
-      this.table.add(statistics);
-      this.table.limit(this.#server.limits.history_generations_kept ?? 10000);
-      this.#on_change();
+  #take(event: Event): void {
+    const of = kind_of(event);
+    if (of === null || (event.world !== this.world && of.kind !== "events_dropped")) {
+      return;
     }
+    switch (of.kind) {
+      case "events_dropped":
+        this.#read_later();
+        break;
+      case "world_reset":
+      case "world_created":
+      case "parameters_changed":
+        void this.#read();
+        break;
+      case "generation_finished":
+        this.#add(of.value.statistics ?? []);
+        break;
+      case "run_control_changed":
+      case "migration":
+      case "extinction":
+      case "run_terminated":
+      case "world_deleted":
+      case "world_damaged":
+      case "server_going_away":
+      case "storage_changed":
+      case "change_dropped":
+      case "change_planned":
+      case "change_cancelled":
+      case "placed":
+      case "removed":
+      case "fitness_awaited":
+      case "fitness_set":
+        break; // not part of a history
+      default:
+        none_left(of);
+    }
+  }
+
+  #add(statistics: readonly GenerationStatistics[]): void {
+    this.#newer?.push(...statistics);
+    this.table.add(statistics);
+    this.table.limit(this.#server.limits.history_generations_kept ?? generations_kept_default);
+    this.#on_change();
   }
 
   /** Reads the history again, at most once a second. */
@@ -64,12 +98,12 @@ export class OtherHistory {
 
   async #read(): Promise<void> {
     const number = ++this.#number;
-    const generations: Message[] = [], changes: Message[] = [];
+    const generations: GenerationStatistics[] = [], changes: AppliedChange[] = [];
     let next: number|undefined;
     this.#newer = [];
     try {
       do {
-        const page: Message = await this.#server.request(
+        const page = await this.#server.request(
           "get_history", {world: this.world, ...(next === undefined ? {} : {first_generation: next})});
         if (number !== this.#number) {
           return;

@@ -1,4 +1,5 @@
-// plot_layout: ticks, zoomed ranges, running means, the points with which a long series is drawn, and groups of marks. Pure functions.
+// plot_layout: ticks, zoomed ranges, running means, the points with which a long series is drawn, and groups of marks.
+// Pure functions.
 import {nice_step, with_separators} from "../texts/numbers";
 
 export type Numbers = ArrayLike<number>;
@@ -75,7 +76,8 @@ export function moved(shown: Range, by: number, whole: Range): Range {
   return {min: shown.min + shift, max: shown.max + shift};
 }
 
-/** Zooms a range; factor > 1 shows a smaller part. The point at `share` of the range keeps its place. The result is inside `whole`. */
+/** Zooms a range; factor > 1 shows a smaller part. The point at `share` of the range keeps its place. The result is
+ *  inside `whole`. */
 export function zoomed(shown: Range, share: number, factor: number, whole: Range, width_min: number): Range {
   const full = whole.max - whole.min, now = shown.max - shown.min;
   const at = shown.min + share * now;
@@ -108,9 +110,9 @@ export function nearest(x: Numbers, at: number): number {
   return after < x.length && (x[after] as number) - at < at - (x[after - 1] as number) ? after : after - 1;
 }
 
-/** Returns the indices at which groups begin, and the end of the last group. All numbers of a group are drawn in one column of pixels. The
- *  groups contain the visible part of a series and one more number at each end. If a column has at most two numbers on average, every
- *  number is a group of its own. `x` rises. */
+/** Returns the indices at which groups begin, and the end of the last group. All numbers of a group are drawn in one
+ *  column of pixels. The groups contain the visible part of a series and one more number at each end. If a column has
+ *  at most two numbers on average, every number is a group of its own. `x` rises. */
 export function groups_of(x: Numbers, shown: Range, columns: number): Uint32Array {
   const begin = Math.max(lower_bound(x, shown.min) - 1, 0);
   const end = Math.min(lower_bound(x, shown.max, true) + 1, x.length);
@@ -135,8 +137,9 @@ export function groups_of(x: Numbers, shown: Range, columns: number): Uint32Arra
   return starts.subarray(0, used);
 }
 
-/** Returns the points x, y, x, y, … of the line through the numbers. A y of NaN interrupts the line. A group contributes at most four points,
- *  which are the first, the least, the greatest and the last number, so no peak is lost. */
+/** Returns the points x, y, x, y, … of the line through the numbers. A y of NaN interrupts the line. A group
+ *  contributes at most four points, which are the first, the least, the greatest and the last number, so no peak is
+ *  lost. */
 export function line_of(x: Numbers, y: Numbers, starts: Uint32Array): number[] {
   const points: number[] = [];
   const add = (i: number) => {
@@ -187,8 +190,8 @@ export function mean_of(y: Numbers, begin: number, end: number): number {
   return count > 0 ? sum / count : 0;
 }
 
-/** Returns, for each finite number, the mean of the finite numbers among it and the `window` - 1 numbers before it; NaN for other numbers.
- *  Later numbers have no influence, so an effect never appears before its cause. */
+/** Returns, for each finite number, the mean of the finite numbers among it and the `window` - 1 numbers before it; NaN
+ *  for other numbers. Later numbers have no influence, so an effect never appears before its cause. */
 export function running_mean(y: Numbers, window: number): Float64Array {
   const means = new Float64Array(y.length);
   for (let i = 0; i < y.length; ++i) {
@@ -217,7 +220,8 @@ export interface Mark {
   text: string;
 }
 
-/** Returns the x of each line that represents the visible marks: marks nearer than `distance` to the first one of a line share this line. */
+/** Returns the x of each line that represents the visible marks: marks nearer than `distance` to the first one of a
+ *  line share this line. */
 export function mark_lines(marks: readonly Mark[], shown: Range, distance: number): number[] {
   const lines: number[] = [];
   for (const {x} of marks) {
@@ -236,8 +240,8 @@ export interface Box {
   bottom: number;
 }
 
-/** Returns the upper left corner of a note of this size beside a box: on its left side, or else where there is room: on the right, above or
- *  below. y: the height at which the note is centred. */
+/** Returns the upper left corner of a note of this size next to a box: on its left side, or else where there is room: on
+ *  the right, above or below. y: the height at which the note is centred. */
 export function note_place(
   box: Box, size: {width: number; height: number}, y: number,
   window: {width: number; height: number}): {left: number; top: number} {

@@ -19,17 +19,33 @@ export interface Rectangle {
   height: number;
 }
 
+/** What surrounds an island, in CSS pixels. */
+export interface Frame {
+  walls: number; // thickness, at any zoom
+  margin: number; // around the walls when the whole island is shown
+}
+
+/** The rectangle of the canvas in which an island is drawn, in CSS pixels. */
+export interface Place extends Rectangle {
+  ratio: number; // device pixels per CSS pixel
+  frame: Frame;
+  is_tile: boolean; // shows the whole island, whatever the camera
+  has_details: boolean; // there is room for labels and trails
+}
+
 export const zoom_max = 64;
-export const wall_pixels = 6; // thickness of the walls, at any zoom
-export const margin_pixels = 8; // around the walls when the whole island is shown
+export const pane_frame: Frame = {
+  walls: 6,
+  margin: 8
+};
 
 function clamp(value: number, low: number, high: number): number {
   return Math.min(Math.max(value, low), high);
 }
 
 /** The largest zoom at which the whole island and its walls are visible. */
-export function zoom_to_fit(canvas: Size, island: Size): number {
-  const around = 2 * (wall_pixels + margin_pixels);
+export function zoom_to_fit(canvas: Size, island: Size, {walls, margin} = pane_frame): number {
+  const around = 2 * (walls + margin);
   const zoom = Math.min(
     (canvas.width - around) / Math.max(island.width, 1), (canvas.height - around) / Math.max(island.height, 1));
   return clamp(zoom, 1e-6, zoom_max);
@@ -40,8 +56,8 @@ export function zoom_min(canvas: Size, island: Size): number {
 }
 
 /** The camera that shows the whole island. */
-export function fitted(canvas: Size, island: Size): Camera {
-  return {x_px: island.width / 2, y_px: island.height / 2, zoom: zoom_to_fit(canvas, island)};
+export function fitted(canvas: Size, island: Size, frame = pane_frame): Camera {
+  return {x_px: island.width / 2, y_px: island.height / 2, zoom: zoom_to_fit(canvas, island, frame)};
 }
 
 /** Keeps the middle of the canvas on the island, and the zoom in its range. */
@@ -80,6 +96,13 @@ export function zoomed(camera: Camera, canvas: Size, island: Size, screen: Point
   return clamped(
     {x_px: held.x - (screen.x - canvas.width / 2) / zoom, y_px: held.y - (screen.y - canvas.height / 2) / zoom, zoom},
     canvas, island);
+}
+
+/** The camera that shows of the island `to` the part that `camera` shows of the island `from`. */
+export function same_part(camera: Camera, from: Size, to: Size, canvas: Size): Camera {
+  const zoom = camera.zoom * Math.min(from.width / to.width, from.height / to.height);
+  return clamped(
+    {x_px: (camera.x_px / from.width) * to.width, y_px: (camera.y_px / from.height) * to.height, zoom}, canvas, to);
 }
 
 /** The visible part of the world. */

@@ -2,17 +2,37 @@
 // otherwise densities are drawn. Food and poison are squares, of which at most a share is drawn.
 import {steps_per_px} from "../core/snapshot";
 
-import {visible_part, wall_pixels} from "./camera";
+import {type Size, visible_part} from "./camera";
 import {label_height} from "./glyphs";
 
 import type {KeptBoxes, Points} from "./interpolator";
-import {css, with_alpha} from "./look";
+import {type Colour, css, with_alpha} from "./look";
 import {is_kept, may_touch} from "./marks";
-import {arrow_px_per_force, chosen_rows, colour_of_choice, inside_walls, Painter, Scene} from "./scene";
+import {arrow_px_per_force, chosen_rows, colour_of_choice, inside_walls, Painter, Scene, Surface} from "./scene";
 
 const items_max = 3_000;
 
-export class Fallback implements Painter {
+export class FallbackSurface implements Surface {
+  readonly #context: OffscreenCanvasRenderingContext2D;
+
+  constructor(context: OffscreenCanvasRenderingContext2D) {
+    this.#context = context;
+  }
+
+  painter(): Painter {
+    return new Fallback(this.#context);
+  }
+
+  fill({width, height}: Size, ratio: number, colour: Colour): void {
+    this.#context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    this.#context.fillStyle = css(colour);
+    this.#context.fillRect(0, 0, width, height);
+  }
+
+  close(): void {}
+}
+
+class Fallback implements Painter {
   readonly kind = "canvas2d";
   readonly organisms_max = 3_000;
   readonly label_height = label_height;
@@ -28,21 +48,31 @@ export class Fallback implements Painter {
     return this.#context.measureText(text).width;
   }
 
+  close(): void {}
+
   draw(scene: Scene): void {
     const context = this.#context;
-    const {canvas, ratio, colours, at} = scene;
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.fillStyle = css(colours.outside);
-    context.fillRect(0, 0, canvas.width, canvas.height);
+    const {left, top, width, height, ratio} = scene.place;
+    context.save();
+    context.setTransform(ratio, 0, 0, ratio, left * ratio, top * ratio);
+    context.beginPath();
+    context.rect(0, 0, width, height);
+    context.clip();
+    context.fillStyle = css(scene.colours.outside);
+    context.fillRect(0, 0, width, height);
+    this.#draw_island(scene);
+    context.restore();
+  }
+
+  #draw_island(scene: Scene): void {
+    const context = this.#context, {colours, at, place: {frame: {walls}}} = scene;
     const info = at.latest.info;
     if (info === null) {
       return;
     }
     const inside = inside_walls(scene, {width: info.width_px, height: info.height_px});
     context.fillStyle = css(colours.wall);
-    context.fillRect(
-      inside.left - wall_pixels, inside.top - wall_pixels, inside.width + 2 * wall_pixels,
-      inside.height + 2 * wall_pixels);
+    context.fillRect(inside.left - walls, inside.top - walls, inside.width + 2 * walls, inside.height + 2 * walls);
     context.fillStyle = css(colours.ground);
     context.fillRect(inside.left, inside.top, inside.width, inside.height);
     const x_of = (steps: number) => inside.left + (steps / steps_per_px) * scene.camera.zoom;
@@ -73,7 +103,7 @@ export class Fallback implements Painter {
   }
 
   #draw_points(
-    points: Points, fill: string, radius_px: number, {camera, canvas}: Scene, x_of: (x: number) => number,
+    points: Points, fill: string, radius_px: number, {camera, place}: Scene, x_of: (x: number) => number,
     y_of: (y: number) => number): void {
     const half = Math.max(radius_px * camera.zoom, 1);
     const share = items_max / Math.max(points.count, 1);
@@ -81,7 +111,7 @@ export class Fallback implements Painter {
     for (let i = 0; i < points.count; ++i) {
       const x = x_of(points.x[i]!);
       const y = y_of(points.y[i]!);
-      const is_visible = x >= -half && y >= -half && x <= canvas.width + half && y <= canvas.height + half;
+      const is_visible = x >= -half && y >= -half && x <= place.width + half && y <= place.height + half;
       if (is_visible && is_kept(points.x[i]! / steps_per_px, points.y[i]! / steps_per_px, share)) {
         this.#context.fillRect(x - half, y - half, 2 * half, 2 * half);
       }
@@ -90,9 +120,9 @@ export class Fallback implements Painter {
 
   #draw_organisms(scene: Scene, x_of: (x: number) => number, y_of: (y: number) => number): void {
     const context = this.#context;
-    const {at, blend, camera, colours, canvas, organism_colours} = scene;
+    const {at, blend, camera, colours, place, organism_colours} = scene;
     const {latest} = at;
-    const visible = visible_part(camera, canvas);
+    const visible = visible_part(camera, place);
     const bytes =
       organism_colours === null ? null : new Uint8Array(organism_colours.buffer, organism_colours.byteOffset);
     for (let i = 0; i < latest.count; ++i) {

@@ -1,4 +1,5 @@
 // GlShapes: draws many shapes of one kind in one call with WebGL2. Tables keep the shapes in graphics memory.
+import type {Place} from "./camera";
 import type {Colour, ShapeStyle} from "./look";
 import {
   fragment_shader,
@@ -34,6 +35,10 @@ export class Table {
   bind(): void {
     this.#gl.activeTexture(this.#gl.TEXTURE0);
     this.#gl.bindTexture(this.#gl.TEXTURE_2D, this.#texture);
+  }
+
+  close(): void {
+    this.#gl.deleteTexture(this.#texture);
   }
 
   /** Replaces the first `texels` texels. */
@@ -103,6 +108,10 @@ export class Cells {
     this.bind();
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  }
+
+  close(): void {
+    this.#gl.deleteTexture(this.#texture);
   }
 
   bind(unit: 0|1 = 0): void {
@@ -199,6 +208,8 @@ export class GlShapes {
   readonly #quad: Program;
   readonly #glyphs: Program;
   readonly #point_pixels_max: number;
+  #left = 0; // the lower left corner of the place, in device pixels from that of the canvas
+  #bottom = 0;
   #width = 1;
   #height = 1;
   #ratio = 1;
@@ -211,41 +222,46 @@ export class GlShapes {
       gl, glyph_vertex_shader, glyph_fragment_shader, ["pixel_size", "glyphs", "cell", "atlas", "tint", "is_halo"]);
   }
 
-  /** ratio: device pixels per pixel of a style. */
-  begin(width: number, height: number, ratio: number): void {
+  /** Draws into a rectangle of the canvas: all coordinates count from its upper left corner, in device pixels, and nothing
+   *  is drawn outside. `place` is in CSS pixels. */
+  begin({left, top, width, height, ratio}: Place): void {
     const gl = this.gl;
-    [this.#width, this.#height, this.#ratio] = [width, height, ratio];
-    gl.viewport(0, 0, width, height);
+    this.#ratio = ratio;
+    this.#left = Math.round(left * ratio);
+    this.#width = Math.max(Math.round(width * ratio), 1);
+    this.#height = Math.max(Math.round(height * ratio), 1);
+    this.#bottom = gl.drawingBufferHeight - Math.round(top * ratio) - this.#height;
+    gl.viewport(this.#left, this.#bottom, this.#width, this.#height);
     gl.enable(gl.SCISSOR_TEST);
     gl.disable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    this.clip(0, 0, width, height);
+    this.clip_to_place();
   }
 
-  /** Restricts drawing to a rectangle of the canvas, in device pixels. */
+  /** Restricts drawing to a rectangle of the place, in device pixels. */
   clip(left: number, top: number, right: number, bottom: number): void {
     const x0 = Math.round(Math.min(Math.max(left, 0), this.#width));
     const x1 = Math.round(Math.min(Math.max(right, 0), this.#width));
     const y0 = Math.round(Math.min(Math.max(top, 0), this.#height));
     const y1 = Math.round(Math.min(Math.max(bottom, 0), this.#height));
-    this.gl.scissor(x0, this.#height - y1, Math.max(x1 - x0, 0), Math.max(y1 - y0, 0));
+    this.gl.scissor(this.#left + x0, this.#bottom + this.#height - y1, Math.max(x1 - x0, 0), Math.max(y1 - y0, 0));
   }
 
-  clip_to_canvas(): void {
+  clip_to_place(): void {
     this.clip(0, 0, this.#width, this.#height);
   }
 
-  /** Fills a rectangle of the canvas in whole pixels. Ends a clip(). */
+  /** Fills a rectangle of the place in whole pixels. Ends a clip(). */
   fill(left: number, top: number, right: number, bottom: number, colour: Colour): void {
     this.clip(left, top, right, bottom);
     this.gl.clearColor(colour[0] / 255, colour[1] / 255, colour[2] / 255, 1);
     this.gl.clear(this.gl.COLOR_BUFFER_BIT);
-    this.clip_to_canvas();
+    this.clip_to_place();
   }
 
-  draw(table: Table, count: number, style: ShapeStyle, projection: Projection, options: DrawOptions): void {
-    if (count === 0) {
+  draw(table: Table|null, count: number, style: ShapeStyle, projection: Projection, options: DrawOptions): void {
+    if (table === null || count === 0) {
       return;
     }
     const gl = this.gl, ratio = this.#ratio;

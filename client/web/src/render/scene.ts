@@ -1,6 +1,6 @@
 // Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland (WebGL2) or Fallback (Canvas2D) draws it.
 import type {Camera, Look, PopulationColumns} from "../core/messages";
-import type {MinimapPlace, Rectangle, Size} from "./camera";
+import type {MinimapPlace, Place, Rectangle, Size} from "./camera";
 import type {DensityGrid} from "./density";
 import type {Interpolator} from "./interpolator";
 import type {Label} from "./labels";
@@ -8,8 +8,7 @@ import type {Colour, IslandColours, ScaleTable, Styles} from "./look";
 import type {Flash, Trails} from "./traces";
 
 export interface Scene {
-  canvas: Size; // in CSS pixels
-  ratio: number; // device pixels per CSS pixel
+  place: Place;
   camera: Camera;
   look: Look;
   colours: IslandColours;
@@ -41,15 +40,25 @@ export interface Painter {
   readonly label_height: number; // CSS pixels
   /** The width of a label's text in CSS pixels. */
   measure(text: string, ratio: number): number;
+  /** Draws into scene.place. */
   draw(scene: Scene): void;
+  /** Frees the memory. Call it before the painter is dropped while the canvas stays. */
+  close(): void;
 }
 
-/** The part of the canvas inside the walls, in CSS pixels. */
-export function inside_walls(scene: {camera: Camera; canvas: Size}, island: Size): Rectangle {
-  const {camera, canvas} = scene;
+/** A canvas with a graphics context, which all painters of its islands share. */
+export interface Surface {
+  painter(): Painter;
+  /** Begins a frame with several islands: fills the canvas, which is `size` CSS pixels. */
+  fill(size: Size, ratio: number, colour: Colour): void;
+  close(): void;
+}
+
+/** The part of the place inside the walls, in CSS pixels. */
+export function inside_walls({camera, place}: {camera: Camera; place: Place}, island: Size): Rectangle {
   return {
-    left: canvas.width / 2 - camera.x_px * camera.zoom,
-    top: canvas.height / 2 - camera.y_px * camera.zoom,
+    left: place.width / 2 - camera.x_px * camera.zoom,
+    top: place.height / 2 - camera.y_px * camera.zoom,
     width: island.width * camera.zoom,
     height: island.height * camera.zoom,
   };

@@ -1,10 +1,11 @@
-// Shaders: draw circles, rectangles, lines and arrows, one triangle or point each, as in evoview (client/viewer/island/shapes.cpp).
+// Shaders: draw circles, rectangles, lines and arrows, one triangle or point each. The text that evoview shares is in client/shaders.
 //
-// The vertex shader reads the shape with index gl_VertexID / 3 from a texture of integers (vertex pulling). The fragment shader
-// computes how much of a pixel a shape covers from its distance to the outline, so shapes are smooth at any zoom.
+// The vertex shader reads the shape with index gl_VertexID / 3 from a texture of integers (vertex pulling).
 //
 // Texels of a shape: (x, y, w, h), and for "paired" shapes also (previous x, previous y, headings, colour). Positions are in steps; the
 // shader subtracts the camera's centre from them as integers, which is exact, before it multiplies by the zoom.
+import shape_frag from "../../../shaders/shape.frag.glsl";
+import shape_vert from "../../../shaders/shape.vert.glsl";
 import type {Form} from "./look";
 
 export interface Variant {
@@ -32,13 +33,10 @@ function header(variant: Variant): string {
     `#define BARE ${Number(variant.bare)}\n`;
 }
 
-export function vertex_shader(variant: Variant): string {
-  return header(variant) + `
+/** Reads a shape, after shape.vert.glsl. */
+const read_source = `
 uniform isampler2D shapes;           // 1,024 texels wide
 uniform int stride;                  // texels of a shape: 1 or 2
-uniform bool coloured;               // whether each shape has its own colour
-uniform vec2 pixel_size;             // size of one pixel in clip space
-uniform vec2 origin;                 // centre of the camera on the canvas, in pixels
 uniform ivec2 centre;                // of the camera, in steps
 uniform vec2 centre_fraction;        // the rest of it
 uniform float zoom;                  // pixels per step
@@ -46,26 +44,12 @@ uniform float blend;
 uniform float health_share;          // of full health per step
 uniform float item_half;             // half size of items, in pixels
 uniform float heading_beyond;        // from the outline to the end of the line, in pixels
-uniform float half_pixels_min, line_pixels, edge_pixels;
-uniform vec4 fill, fill_low;
-#if POINT
-flat out float reach;                // half the size of the point, in pixels
-#else
-out vec2 place;                      // offset from the shape's centre, in pixels, along the shape's axes
-#endif
-flat out vec2 half_size;
-flat out vec4 own_fill;
-#if FORM == BODY && !BARE
-flat out vec3 arc;                   // of a body: direction across the end of the arc; health
-flat out float rim;                  // of a body: width of the arc; 0: none
-#endif
 ivec4 texel(int i) {
   return texelFetch(shapes, ivec2(i & 1023, i >> 10), 0);
 }
-void main() {
-  int index = POINT == 1 ? gl_VertexID : gl_VertexID / 3;
+Source read_source(int index) {
   ivec4 shape = texel(index * stride);
-  own_fill = fill;
+  Source source = Source(vec2(0.0), vec2(0.0), 0.0, vec4(0.0));
 #if !ITEM
   ivec4 more = ivec4(0);
   if (MOVING == 1 || coloured) {
@@ -73,146 +57,39 @@ void main() {
   }
   if (coloured) {
     uint packed = uint(more.w);
-    own_fill = vec4(packed & 255u, (packed >> 8) & 255u, (packed >> 16) & 255u, packed >> 24) / 255.0;
+    source.colour = vec4(packed & 255u, (packed >> 8) & 255u, (packed >> 16) & 255u, packed >> 24) / 255.0;
   }
 #endif
 #if MOVING
-  vec2 middle = (vec2(more.xy - centre) + vec2(shape.xy - more.xy) * blend - centre_fraction) * zoom;
+  source.middle = (vec2(more.xy - centre) + vec2(shape.xy - more.xy) * blend - centre_fraction) * zoom;
 #else
-  vec2 middle = (vec2(shape.xy - centre) - centre_fraction) * zoom;
+  source.middle = (vec2(shape.xy - centre) - centre_fraction) * zoom;
 #endif
-  vec2 along = vec2(1.0, 0.0), around = vec2(0.5);
 #if ITEM
-  half_size = vec2(max(item_half, half_pixels_min));
-#else
-  half_size = max(vec2(shape.zw) * zoom, vec2(half_pixels_min));
-#endif
-#if HEADING
+  source.extent = vec2(item_half);
+#elif HEADING
   float heading = float(more.z & 255), turned = float(((more.z & 255) - ((more.z >> 8) & 255) + 128 & 255) - 128);
   float angle = (heading - (1.0 - blend) * turned) * 6.2831853 / 256.0;
-  along = vec2(cos(angle), sin(angle));
-  float radius = float(shape.z) * zoom, begin = 0.35 * radius, end = radius + heading_beyond;
-  middle += along * (begin + end) / 2.0;
-  half_size = vec2(end - begin, line_pixels) / 2.0;
-  around += vec2(line_pixels);
-#elif FORM == LINE || FORM == ARROW || FORM == SOFT_LINE
-  vec2 way = vec2(shape.zw - shape.xy) * zoom;
-  float pixels = length(way);
-  middle += way / 2.0;
-  along = pixels > 0.0 ? way / pixels : along;
-  half_size = vec2(pixels, line_pixels) / 2.0;
-  around += FORM == ARROW ? vec2(line_pixels, 2.5 * line_pixels) : vec2(line_pixels);
-#elif FORM == BODY
-  float health = min(float(shape.w) * health_share, 1.0);
-  half_size = half_size.xx;
-#if !BARE
-  rim = half_size.x < 0.8 * edge_pixels ? 0.0 : min(edge_pixels, 0.4 * half_size.x); // a small body has no arc
-  around += 1.6 * rim;
-  arc = vec3(cos(6.2831853 * health), sin(6.2831853 * health), health);
-#endif
-  own_fill = coloured ? own_fill : mix(fill_low, fill, health);
-#elif FORM == LEAF || FORM == STAR
-  around += 0.5 + 0.5 * half_size;
-#elif FORM == CIRCLE
-  half_size = half_size.xx;
-#endif
-#if POINT
-  bool is_dot = half_size.x <= 0.5; // fills the pixel at its centre
-  reach = is_dot ? 0.5 : half_size.x + around.x;
-  gl_PointSize = 2.0 * reach;
-  vec2 pixel = is_dot ? floor(origin + middle) + 0.5 : origin + middle;
+  vec2 ahead = vec2(cos(angle), sin(angle));
+  float radius = float(shape.z) * zoom;
+  source.middle += ahead * 0.35 * radius;
+  source.extent = ahead * (0.65 * radius + heading_beyond);
 #else
-  int corner_index = gl_VertexID % 3; // one triangle covers the rectangle around the shape
-  vec2 corner = vec2(corner_index == 1, corner_index == 2) * 4.0 - 1.0;
-  place = corner * (half_size + around);
-  vec2 pixel = origin + middle + along * place.x + vec2(-along.y, along.x) * place.y;
+  source.extent = vec2(shape.zw) * zoom;
 #endif
-  gl_Position = vec4(pixel.x * pixel_size.x - 1.0, 1.0 - pixel.y * pixel_size.y, 0.0, 1.0);
+#if FORM == BODY
+  source.health = min(float(shape.w) * health_share, 1.0);
+#endif
+  return source;
 }
 `;
+
+export function vertex_shader(variant: Variant): string {
+  return header(variant) + shape_vert + read_source;
 }
 
 export function fragment_shader(variant: Variant): string {
-  return header(variant) + `
-#if POINT
-flat in float reach;
-#define place ((2.0 * gl_PointCoord - 1.0) * reach)
-#else
-in vec2 place;
-#endif
-flat in vec2 half_size;
-flat in vec4 own_fill;
-#if FORM == BODY && !BARE
-flat in vec3 arc;
-flat in float rim;
-#endif
-uniform vec4 edge;
-uniform float edge_pixels, line_pixels;
-out vec4 colour;                     // with premultiplied alpha
-float covered(float outside) {
-  return clamp(0.5 - outside, 0.0, 1.0);
-}
-#if FORM == BODY && BARE
-void main() {
-  float from_centre = length(place), share = from_centre / half_size.x;
-  colour = vec4(own_fill.rgb * (1.0 - 0.2 * share * share), 1.0) * own_fill.a * covered(from_centre - half_size.x);
-}
-#elif FORM == BODY
-void main() {
-  float radius = half_size.x, from_centre = length(place);
-  float outer = radius + 1.6 * rim, share = from_centre / radius;
-  float before_end = -dot(place, arc.xy), after_begin = place.x;
-  float within = arc.z < 0.5 ? min(after_begin, before_end) : max(after_begin, before_end);
-  float lit = arc.z <= 0.0 ? 0.0 : arc.z >= 1.0 ? 1.0 : clamp(within + 0.5, 0.0, 1.0);
-  float ring = covered(from_centre - outer) - covered(from_centre - outer + rim);
-  colour = vec4(own_fill.rgb * (1.0 - 0.2 * share * share), 1.0) * own_fill.a * covered(from_centre - radius) +
-           vec4(edge.rgb, 1.0) * edge.a * ring * (0.2 + 0.8 * lit);
-}
-#elif FORM == RIPPLE
-void main() {
-  float share = length(place) / half_size.x;
-  colour = vec4(own_fill.rgb, 1.0) * own_fill.a * share * share * covered(length(place) - half_size.x);
-}
-#elif FORM == SOFT_LINE
-void main() {
-  float across = clamp(1.0 - abs(place.y) / half_size.y, 0.0, 1.0);
-  colour = vec4(own_fill.rgb, 1.0) * own_fill.a * across * covered(abs(place.x) - half_size.x);
-}
-#else
-float distance_outside() {
-  vec2 beyond = abs(place) - half_size;
-#if FORM == CIRCLE
-  return length(place) - half_size.x;
-#elif FORM == RECTANGLE
-  return max(beyond.x, beyond.y);
-#elif FORM == LEAF                   // the overlap of two discs
-  vec2 tilted = vec2(place.x - place.y, place.x + place.y) * 0.7071;
-  return length(vec2(tilted.x, abs(tilted.y) + 1.018 * half_size.x)) - 2.068 * half_size.x;
-#elif FORM == STAR                   // the distance from the line between a tip and the valley beside it
-  vec2 tilted = abs(vec2(place.x - place.y, place.x + place.y)) * 0.7071;
-  tilted = tilted.y > tilted.x ? tilted.yx : tilted;
-  return dot(tilted - vec2(2.0 * half_size.x, 0.0), vec2(0.339, 0.941));
-#else
-  float outside = length(vec2(max(beyond.x, 0.0), place.y)) - half_size.y;
-#if FORM == ARROW
-  float head = min(4.5 * line_pixels, half_size.x), behind_tip = half_size.x - place.x;
-  outside = min(outside, max((abs(place.y) - behind_tip / 2.0) * 0.894, behind_tip - head));
-#endif
-  return outside;
-#endif
-}
-void main() {
-  float outside = distance_outside();
-  float whole = covered(outside), inner = covered(outside + edge_pixels);
-  vec3 inside = own_fill.rgb;
-#if FORM == LEAF
-  float vein = 0.09 * half_size.x;
-  inside *= 1.0 - 0.35 * covered(abs(place.x + place.y) * 0.7071 - vein) * clamp(vein - 0.3, 0.0, 1.0);
-#endif
-  colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(inside, 1.0) * own_fill.a * inner;
-}
-#endif
-`;
+  return header(variant) + shape_frag;
 }
 
 /** A rectangle with a texture whose texels are cells. */

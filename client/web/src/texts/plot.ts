@@ -23,5 +23,6 @@ export const plot_texts = {
   best: "best",
   curve_title: (generation: number) => `Fitness, generation ${shown_number(generation)}`,
   no_curve: "Fitness: the curve begins when the first generation ends",
+  changed: (generation: number, values: string, actor: string) => `generation ${generation}: ${values} by ${actor}`,
   click_shows: "A click shows this generation in a replay.",
 };

@@ -1,5 +1,8 @@
 // texts: sentences about worlds, in the words of the other programs of evod.
+import texts from "../../../../proto/texts/events.json";
+
 import {duration, shown_number, with_separators} from "./numbers";
+
 import type {Message} from "../core/messages";
 import type {SnapshotInfo} from "../core/snapshot";
 
@@ -12,26 +15,15 @@ function last_field_name(field: string): string {
   return field.slice(field.lastIndexOf(".") + 1);
 }
 
-/** The sentence of a Status message. */
+/** The message of a Status on one line, with the names of fields in place of their paths. */
 export function refusal_text(status: Message): string {
   const violations: Message[] = status.violations ?? [];
-  const message: string = status.message ?? "";
-  if (violations.length === 1) {
-    const {field = "", got = "", allowed = ""} = violations[0]!;
-    if (field && message.startsWith(field)) { // the message says what is allowed
-      return capitalised(last_field_name(field) + message.slice(field.length));
-    }
-    if (allowed && message.includes(allowed)) {
-      return capitalised(message);
-    }
-    return `${capitalised(message)}${got ? ` (${got})` : ""}; allowed: ${allowed}`;
-  }
-  return capitalised(message) +
+  return capitalised(
     violations
-      .map(
-        ({field = "", got = "", allowed = ""}, i) =>
-          `${i === 0 ? ": " : "; "}${last_field_name(field)} must be ${allowed}${got ? `, not ${got}` : ""}`)
-      .join("");
+      .reduce(
+        (text: string, {field = ""}) => text.replace(`${field}: `, `${last_field_name(field)}: `), status.message ?? "")
+      .replace("\n  ", ": ")
+      .replaceAll("\n  ", "; "));
 }
 
 /** "2×", "1/8×", "max". */
@@ -46,17 +38,7 @@ export function speed_text(speed: Message|undefined): string {
 
 /** Why commands are refused or worlds wait; empty if the server can write its runs. */
 export function storage_text(storage: Message|null|undefined): string {
-  const reason: string = storage?.reason ?? "";
-  switch (storage?.state) {
-    case "STORAGE_STATE_FAILING":
-      return "Commands are refused: " + reason;
-    case "STORAGE_STATE_STALLED":
-      return "Worlds wait for the disk, commands are refused: " + reason;
-    case "STORAGE_STATE_BEHIND":
-      return "Worlds wait for the disk: " + reason;
-    default:
-      return "";
-  }
+  return capitalised(storage?.text ?? "");
 }
 
 export function state_word(state: string, storage?: Message|null, awaits_fitness = false): string {
@@ -78,18 +60,7 @@ export function state_word(state: string, storage?: Message|null, awaits_fitness
 }
 
 export function outcome_words(outcome: string|undefined): string {
-  switch (outcome) {
-    case "OUTCOME_GENERATION_LIMIT":
-      return "generation limit reached";
-    case "OUTCOME_TARGET_FITNESS":
-      return "target fitness reached";
-    case "OUTCOME_STAGNATION":
-      return "fitness has stagnated";
-    case "OUTCOME_EXTINCTION":
-      return "all organisms have died";
-    default:
-      return "a termination criterion is met";
-  }
+  return (texts.outcome as {[outcome: string]: string})[outcome ?? ""] ?? "ended by a criterion";
 }
 
 /** "default · island 1 of 0–3 · 2× (120 ticks/s)". */

@@ -1,10 +1,17 @@
 // event_text: events as sentences, and which of them a user should notice at once.
-import {duration, with_separators} from "../texts/numbers";
-import {actor_text, outcome_words, speed_text, state_word, storage_text} from "../texts/texts";
-
-import {change_value_text} from "./change_text";
-
+//
+// proto/texts/events.json contains the templates, and server/protocol/event_text.h describes them. This file fills them in as the
+// server does; proto/vectors/events.json contains examples, which the tests of both compare. The page fills in the events itself,
+// because it creates events_dropped itself, too.
+import texts from "../../../../proto/texts/events.json";
+import {with_separators} from "../texts/numbers";
+import {capitalised} from "../texts/texts";
 import type {Message} from "../core/messages";
+
+type Words = {
+  [name: string]: string
+};
+const templates: {[name: string]: string|Words} = texts;
 
 /** The commands that cause the events of which users of a world want to hear. */
 export const noticed_events: {[event: string]: string[]} = {
@@ -18,123 +25,123 @@ export const noticed_events: {[event: string]: string[]} = {
   run_terminated: [],
 };
 
-function list(names: string[]): string {
-  return names.join(", ");
-}
+/** Events about the progress of the simulation. */
+const progress = new Set(["generation_finished", "migration", "extinction", "fitness_awaited"]);
 
-function entities(verb: string, placed: Message): string {
-  const parts =
-    ([["food", "food", "food"], ["poison", "poison", "poison"], ["organisms", "organism", "organisms"]] as const)
-      .map(([field, one, many]) => [placed[field]?.length ?? 0, one, many] as const)
-      .filter(([count]) => count > 0)
-      .map(([count, one, many]) => `${count} ${count === 1 ? one : many}`);
-  return `${actor_text(placed.by)} ${verb} ${parts.join(", ")}${placed.island ? ` on island ${placed.island}` : ""}`;
-}
-
-function when(change: Message|undefined): string {
-  return change?.tick !== undefined ? `after tick ${with_separators(change.tick)}` :
-                                      `from generation ${with_separators(change?.generation ?? 0)}`;
+/** Returns the field of the oneof Event.kind that is set; undefined for an event that this page does not know. */
+export function event_kind(event: Message): string|undefined {
+  return Object.keys(event).find((field) => typeof event[field] === "object" && typeof templates[field] === "string");
 }
 
 /** The sentence about an event, and whether it is about the progress of the simulation. */
 export function event_text(event: Message): [string, boolean] {
-  if (event.generation_finished) {
-    const of: Message|undefined = event.generation_finished.statistics?.[0];
-    return [
-      `Generation ${with_separators(of?.generation ?? 0)} has ended after ${
-        duration(of?.simulated_s ?? 0)}: best fitness ${(of?.fitness_best ?? 0).toFixed(1)}, mean ${
-        (of?.fitness_mean ?? 0).toFixed(1)}`,
-      true
-    ];
-  }
-  if (event.migration) {
-    const edges: Message[] = event.migration.edges ?? [];
-    return [
-      `${edges.reduce((sum, edge) => sum + (edge.migrant_count ?? 0), 0)} organisms migrated over ${edges.length} ${
-        edges.length === 1 ? "edge" : "edges"}`,
-      true
-    ];
-  }
-  if (event.extinction) {
-    return [
-      `All organisms of island ${event.extinction.island ?? 0} have died in generation ${
-        with_separators(event.extinction.generation ?? 0)}`,
-      true
-    ];
-  }
-  if (event.fitness_awaited) {
-    return [
-      `The world waits for the fitness of generation ${with_separators(event.fitness_awaited.generation ?? 0)}`, true
-    ];
-  }
-  const sentence = sentence_of(event);
-  return [sentence.charAt(0).toUpperCase() + sentence.slice(1), false];
+  const kind = event_kind(event);
+  return kind === undefined ?
+    [event.text ?? "", false] :
+    [capitalised(fill(templates[kind] as string, event[kind], event).text), progress.has(kind)];
 }
 
-function sentence_of(event: Message): string {
-  if (event.parameters_changed) {
-    const {by, changed = []} = event.parameters_changed;
-    return `${actor_text(by)} changed ${
-      list(changed.map((one: Message) => `${one.name} to ${change_value_text(one.pending ?? one.value)}`))}`;
+/** A text, and whether all values in it are present. */
+interface Filled {
+  text: string;
+  present: boolean;
+}
+
+function fill(template: string, message: Message, event: Message): Filled {
+  const filled = {text: "", present: true};
+  for (const [, plain, argument, alternatives] of template.matchAll(/([^[{]+)|\{(.*?)\}|\[(.*?)\]/g)) {
+    if (argument !== undefined) {
+      const {text, present} = fill_argument(argument, message, event);
+      filled.text += text;
+      filled.present &&= present;
+    } else {
+      filled.text += plain ??
+        alternatives!.split("|").map((one) => fill(one, message, event)).find((one) => one.present)?.text ?? "";
+    }
   }
-  if (event.change_planned) {
-    const {change} = event.change_planned;
-    return `${actor_text(change?.by)} plans to change ${
-      list((change?.parameters ?? []).map((one: Message) => one.name))} ${when(change)}`;
+  return filled;
+}
+
+/** Fills in the text between braces. */
+function fill_argument(argument: string, message: Message, event: Message): Filled {
+  const parts = argument.split("; ").map((part): Filled => {
+    const [path = "", rule = ""] = part.split(":"), fields = path.split("."), of_event = fields[0] === "event";
+    return text_of_all(values_of(of_event ? event : message, of_event ? fields.slice(1) : fields), rule, event);
+  });
+  const present = parts.filter((part) => part.present);
+  return parts.length === 1 ? parts[0]! :
+                              {text: present.map((part) => part.text).join(", "), present: present.length > 0};
+}
+
+/** The values of a path: one, undefined if its field is absent; or all of a repeated field. */
+function values_of(value: any, fields: string[]): any[] {
+  if (Array.isArray(value)) {
+    return value.flatMap((one) => values_of(one, fields));
   }
-  if (event.change_cancelled) {
-    const {by, change} = event.change_cancelled;
-    return `${actor_text(by)} cancelled the change of ${
-      list((change?.parameters ?? []).map((one: Message) => one.name))} ${when(change)}`;
+  return fields.length === 0 ? [value] : values_of(value?.[fields[0]!], fields.slice(1));
+}
+
+function text_of_all(values: any[], rule: string, event: Message): Filled {
+  const [kind = "", words] =
+    [rule.split(" ", 1)[0], rule.includes(" ") ? rule.slice(rule.indexOf(" ") + 1) : undefined];
+  const given = values.filter((value) => value !== undefined), any_given = given.length > 0;
+  switch (kind) {
+    case "count":
+      return amount(BigInt(given.length), words);
+    case "sum":
+      return amount(given.reduce((sum: bigint, value) => sum + BigInt(value), 0n), words);
+    case "max":
+      return {
+        text: one_decimal(values.length ? Math.max(...values.map((value) => value ?? 0)) : 0),
+        present: any_given
+      };
+    case "mean":
+      return {
+        text: one_decimal(values.reduce((sum, value) => sum + (value ?? 0) / values.length, 0)),
+        present: any_given
+      };
+    case "if":
+      return {text: "", present: any_given};
+    case "first":
+      return {text: any_given ? text_of(given[0], "", event) : "", present: any_given};
+    default: {
+      const text = values.map((value) => text_of(value, rule, event)).filter(Boolean).join(", ");
+      return {text, present: rule === "" || rule === "real" ? any_given : text !== ""};
+    }
   }
-  if (event.change_dropped) {
-    return `the change of ${list(event.change_dropped.name ?? [])} that ${
-      actor_text(event.change_dropped.by)} planned was dropped, because it conflicts with the other parameters`;
+}
+
+/** The text of one value by a rule that treats each value on its own. */
+function text_of(value: any, rule: string, event: Message): string {
+  switch (rule) {
+    case "":
+      return with_separators(value ?? 0);
+    case "text":
+      return value === undefined ? "" : String(value);
+    case "real":
+      return real_text(value ?? 0);
+    default: {
+      const named = templates[rule]!;
+      return value === undefined ? "" : typeof named === "string" ? fill(named, value, event).text : named[value] ?? "";
+    }
   }
-  if (event.run_control_changed) {
-    const {by, world} = event.run_control_changed;
-    return `${actor_text(by)}: the world is ${state_word(world?.state ?? "")}, speed ${speed_text(world?.speed)}`;
-  }
-  if (event.run_terminated) {
-    return `the run has ended: ${outcome_words(event.run_terminated.outcome)}`;
-  }
-  if (event.world_created) {
-    return `${actor_text(event.world_created.by)} created the world ${event.world ?? ""}`;
-  }
-  if (event.world_reset) {
-    return `${actor_text(event.world_reset.by)} reset the world`;
-  }
-  if (event.world_deleted) {
-    return `${actor_text(event.world_deleted.by)} deleted the world ${event.world ?? ""}`;
-  }
-  if (event.world_damaged) {
-    return `the world ${event.world ?? ""} does not run: ${event.world_damaged.reason ?? ""}`;
-  }
-  if (event.placed) {
-    return entities("placed", event.placed);
-  }
-  if (event.removed) {
-    return entities("removed", event.removed);
-  }
-  if (event.fitness_set) {
-    return `${actor_text(event.fitness_set.by)} set the fitness of ${
-      with_separators(
-        event.fitness_set.organism_count ??
-        0)} organisms of generation ${with_separators(event.fitness_set.generation ?? 0)}`;
-  }
-  if (event.storage_changed) {
-    const of = event.world ? `the world ${event.world}: ` : "";
-    return of +
-      (storage_text(event.storage_changed.storage) ||
-       (of ? "its run file can be written again" : "the server can write its runs again"));
-  }
-  if (event.server_going_away) {
-    return "the server is shutting down";
-  }
-  if (event.events_dropped) {
-    return event.events_dropped.dropped_count ?
-      `${with_separators(event.events_dropped.dropped_count)} events were dropped: this page read too slowly` :
-      "events may be missing: the connection was lost meanwhile";
-  }
-  return "";
+}
+
+/** "3 organisms"; without words, only the number. */
+function amount(number: bigint, words: string|undefined): Filled {
+  const text = with_separators(number);
+  return {
+    text: words === undefined ? text : `${text} ${words.split("/")[number === 1n ? 0 : 1]}`,
+    present: number !== 0n
+  };
+}
+
+function real_text(number: number): string {
+  const size = Math.abs(number);
+  return size === 0 || (size >= 1e-5 && size < 1e15) ? String(number + 0) :
+                                                       number.toExponential().replace(/e([+-])(\d)$/, "e$10$2");
+}
+
+function one_decimal(number: number): string {
+  return Math.abs(number) >= 1e15 ? real_text(number) : number.toFixed(1);
 }

@@ -2,6 +2,13 @@
 import type {Server} from "./server";
 import type {ViewedWorld} from "./world";
 
+/** An organism that a tool places: its genes, and its name: "a copy of organism 12". */
+export interface PlacedModel {
+  name: string;
+  genes: number[];
+  gene_names?: string[]; // absent: those of the world from which it comes
+}
+
 export interface PanelContext {
   readonly server: Server;
   /** The world of the pane with the focus. */
@@ -14,6 +21,8 @@ export interface PanelContext {
   fork(name?: string): Promise<void>;
   /** Opens a panel by its name, with a subject: open("glass box", {generation: 3, organism: 7}). */
   open(panel: string, subject?: {[key: string]: unknown}): void;
+  /** Lets each click in the focused island place a copy of the model. Returns whether it can; if not, a message says why. */
+  place_by_clicks(model: PlacedModel): boolean;
   /** Shows a short message at the bottom, read by screen readers. */
   notify(text: string): void;
   /** Runs a request, and shows the sentence of a refusal. Returns whether it succeeded. */

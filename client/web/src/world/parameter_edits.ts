@@ -14,49 +14,25 @@ const field_prefix = "set_parameters.";
 
 // ---- the registry --------------------------------------------------------------------------------------------------
 
-/** The first parameter of a group, and the title of the group. Groups are in the order of the registry. */
-const topics = new Map([
-  ["fitness", "Experiment"],
-  ["island_count", "Islands"],
-  ["food_count", "Food and poison"],
-  ["obstacle_count", "Obstacles and crates"],
-  ["item_radius_px", "Items"],
-  ["health_loss_per_s", "Health and behaviour"],
-  ["damping", "Physics"],
-  ["radius_per_unit_px", "From genes to bodies"],
-  ["normal_speed_cost", "Costs of genes"],
-  ["population_size", "Population"],
-  ["fitness_scaling", "Selection"],
-  ["crossover", "Crossover"],
-  ["rearranging", "Mutation"],
-  ["initial_gene_min", "Bounds of genes"],
-  ["generation_limit", "End of the run"],
-  ["migration", "Migration"],
-]);
-const most_used_names =
-  ["selection", "tournament_size", "mutation_chance", "mutation_step", "population_size", "food_count", "poison_count"];
-
 export interface ParameterGroup {
   title: string;
   members: number[]; // indices in the registry
 }
 
-/** Returns the parameters that users change most often, in the order in which they are shown. */
+/** Returns the parameters that users change most often, in the order of the registry. */
 export function most_used(registry: readonly Message[]): ParameterGroup {
-  const members =
-    most_used_names.map((name) => registry.findIndex((one) => one.name === name)).filter((index) => index >= 0);
-  return {title: "Most used", members};
+  return {title: "Most used", members: registry.flatMap((about, i) => (about.is_most_used ? [i] : []))};
 }
 
-/** Groups the registry by topic, in its order. A parameter that the page does not know belongs to the topic of the one before it. */
+/** Groups the registry by topic, in its order. */
 export function grouped(registry: readonly Message[]): ParameterGroup[] {
   const groups: ParameterGroup[] = [];
   registry.forEach((about, i) => {
-    const title = topics.get(about.name);
-    if (title !== undefined || groups.length === 0) {
-      groups.push({title: title ?? "General", members: []});
+    const title: string = about.topic ?? "";
+    if (groups.at(-1)?.title !== title) {
+      groups.push({title, members: []});
     }
-    groups[groups.length - 1]!.members.push(i);
+    groups.at(-1)!.members.push(i);
   });
   return groups;
 }

@@ -9,7 +9,7 @@ import {Refusal} from "./server";
 import type {Moment, RunRange} from "./time_scale";
 
 const range_ms = 1000; // between two requests for the range of a replay, which grows with the live world
-const no_runs = "This server stores no runs, so it cannot replay them: start it without --keep-nothing";
+const no_runs = "The run of this world is not stored.";
 
 /** The live world whose past is shown. */
 export interface LiveWorld {

@@ -313,24 +313,26 @@ TEST_F(ParameterEditsTest, AnotherRunClearsEditsAndUndo) {
     EXPECT_EQ(edits.revision(), 1u);
 }
 
-TEST(ParameterGroups, AnUnknownParameterJoinsTheTopicBeforeIt) {
+TEST(ParameterGroups, AreTheTopicsOfTheServer) {
     std::vector<ParameterDescription> registry;
-    for (const char* name : {"brand_new", "fitness", "crossover", "crossover_novelty", "migration"}) {
-        registry.push_back(describe(name, evod::v1::PARAMETER_KIND_REAL, 0, 1, real(0)));
+    for (const char* topic : {"Experiment", "Crossover", "Crossover", "Migration"}) {
+        registry.push_back(describe("one", evod::v1::PARAMETER_KIND_REAL, 0, 1, real(0)));
+        registry.back().set_topic(topic);
     }
     std::vector<std::string> groups;
     for (const ParameterGroup& part : group(registry)) {
-        groups.push_back(std::string{part.title} + " " + std::to_string(part.members.size()));
+        groups.push_back(part.title + " " + std::to_string(part.members.size()));
     }
-    EXPECT_THAT(groups, ElementsAre("General 1", "Experiment 1", "Crossover 2", "Migration 1"));
+    EXPECT_THAT(groups, ElementsAre("Experiment 1", "Crossover 2", "Migration 1"));
 }
 
-TEST(ParameterGroups, TheMostUsedAreThoseThatTheServerHas) {
+TEST(ParameterGroups, TheServerNamesTheMostUsed) {
     std::vector<ParameterDescription> registry;
-    for (const char* name : {"food_count", "brand_new", "selection"}) {
-        registry.push_back(describe(name, evod::v1::PARAMETER_KIND_REAL, 0, 1, real(0)));
+    for (const bool is_most_used : {true, false, true}) {
+        registry.push_back(describe("one", evod::v1::PARAMETER_KIND_REAL, 0, 1, real(0)));
+        registry.back().set_is_most_used(is_most_used);
     }
-    EXPECT_THAT(most_used(registry).members, ElementsAre(2, 0)) << "in the order of use";
+    EXPECT_THAT(most_used(registry).members, ElementsAre(0, 2));
 }
 
 TEST(ParameterSearch, MatchesEveryWordOfParameterAndGroup) {

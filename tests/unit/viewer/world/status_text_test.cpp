@@ -15,17 +15,16 @@ TEST(StatusText, DescribesTheStateOfTheDisk) {
     EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage, false), "running");
     storage.set_state(evod::v1::STORAGE_STATE_FAILING);
     storage.set_reason("it is full");
+    EXPECT_EQ(storage_text(storage), "It is full") << "from a server that sends no text";
+    storage.set_text("commands are refused: it is full");
     EXPECT_EQ(storage_text(storage), "Commands are refused: it is full");
     EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage, false), "running");
     storage.set_state(evod::v1::STORAGE_STATE_STALLED);
-    EXPECT_EQ(storage_text(storage), "Worlds wait for the disk, commands are refused: it is full");
     EXPECT_STREQ(state_text(evod::v1::RUN_STATE_RUNNING, storage, false), "waits for the disk");
     EXPECT_STREQ(state_text(evod::v1::RUN_STATE_PAUSED, storage, false), "paused");
     EXPECT_STREQ(state_word(evod::v1::RUN_STATE_PAUSED, storage, false), "paused");
     EXPECT_STREQ(state_text(evod::v1::RUN_STATE_WAITING, storage, false), "waiting – Space runs");
     EXPECT_STREQ(state_word(evod::v1::RUN_STATE_WAITING, storage, false), "waiting");
-    storage.set_state(evod::v1::STORAGE_STATE_BEHIND);
-    EXPECT_EQ(storage_text(storage), "Worlds wait for the disk: it is full");
 }
 
 TEST(StatusText, ARunningWorldMayWaitForFitness) {
@@ -55,22 +54,17 @@ TEST(StatusText, FormatsSpeedsAsMultiplesOfRealTime) {
 
 TEST(StatusText, FormatsARefusalAsASentence) {
     evod::v1::Status status;
-    status.set_message("there is no such island");
-    auto& violation = *status.add_violations();
-    violation.set_field("subscribe_snapshots.island");
-    violation.set_got("9");
-    violation.set_allowed("0 to 7");
-    EXPECT_EQ(refusal_text(status), "There is no such island (9); allowed: 0 to 7");
-    status.set_message("fork_world.name must be 1 to 64 letters, not \"a b\"");
-    violation.set_field("fork_world.name");
-    violation.set_got("a b");
-    violation.set_allowed("1 to 64 letters");
-    EXPECT_EQ(refusal_text(status), "Name must be 1 to 64 letters, not \"a b\"") << "the field is named once";
-    status.set_message("2 fields are not as they must be");
+    status.set_message("no such island\n  subscribe_snapshots.island: got 9, allowed 0 to 7");
+    status.add_violations()->set_field("subscribe_snapshots.island");
+    EXPECT_EQ(refusal_text(status), "No such island: island: got 9, allowed 0 to 7");
+    status.set_message("fork_world.name: got \"a b\", allowed 1 to 64 letters");
+    status.mutable_violations(0)->set_field("fork_world.name");
+    EXPECT_EQ(refusal_text(status), "Name: got \"a b\", allowed 1 to 64 letters");
+    status.set_message("2 fields are invalid\n  fork_world.name: got a b, allowed 1 to 64 letters\n"
+                       "  fork_world.seed: got x, allowed a number");
     status.add_violations()->set_field("fork_world.seed");
-    status.mutable_violations(1)->set_allowed("a number");
-    EXPECT_EQ(refusal_text(status), "2 fields are not as they must be: name must be 1 to 64 letters, not a b; "
-                                    "seed must be a number");
+    EXPECT_EQ(refusal_text(status), "2 fields are invalid: name: got a b, allowed 1 to 64 letters; "
+                                    "seed: got x, allowed a number");
 }
 
 TEST(StatusText, DescribesALossWithoutCodesAndOptions) {

@@ -1,0 +1,89 @@
+// csv: tables as text, with the quoting of RFC 4180: a cell that contains a comma, a quote or a line break is in
+// quotes, and each quote inside it is doubled. Lines end with LF, as in the tables of evod; CRLF is read, too. Pure
+// functions.
+
+export interface CsvRecord {
+  line: number; // of its beginning, from 1
+  cells: string[];
+}
+
+/** A place where a text is not CSV. */
+export class CsvError {
+  constructor(readonly line: number, readonly wrong: "open quote"|"text after quote") {}
+}
+
+/** Returns the line of these cells, without its end. */
+export function csv_line(cells: readonly(string | number)[]): string {
+  return cells.map((cell) => (/[",\r\n]/.test(String(cell)) ? `"${String(cell).replaceAll('"', '""')}"` : cell))
+    .join(",");
+}
+
+/** Returns the records of a text. Empty lines are skipped, and so are lines with # before the first record, which are
+ *  comments. */
+export function csv_records(text: string): CsvRecord[]|CsvError {
+  const records: CsvRecord[] = [];
+  let at = text.startsWith("\ufeff") ? 1 : 0;
+  for (let line = 1; at < text.length;) {
+    const end = end_of_line(text, at);
+    const whole = text.slice(at, text[end - 1] === "\r" ? end - 1 : end);
+    if (whole === "" || (records.length === 0 && whole.startsWith("#"))) {
+      at = end + 1;
+      ++line;
+    } else if (!whole.includes('"')) {
+      records.push({line, cells: whole.split(",")});
+      at = end + 1;
+      ++line;
+    } else {
+      const read = quoted_record(text, at, line);
+      if (read instanceof CsvError) {
+        return read;
+      }
+      records.push({line, cells: read.cells});
+      at = read.at;
+      line = read.line;
+    }
+  }
+  return records;
+}
+
+function end_of_line(text: string, at: number): number {
+  const end = text.indexOf("\n", at);
+  return end < 0 ? text.length : end;
+}
+
+/** Reads a record with quotes that begins at an index. Returns its cells, and where the next record begins. */
+function quoted_record(text: string, at: number, line: number): {cells: string[]; at: number; line: number}|CsvError {
+  const cells: string[] = [];
+  for (;;) {
+    let cell = "";
+    if (text[at] === '"') {
+      const begun = line;
+      for (++at;; ++at) {
+        if (at >= text.length) {
+          return new CsvError(begun, "open quote");
+        }
+        if (text[at] === '"' && text[++at] !== '"') {
+          break;
+        }
+        line += text[at] === "\n" ? 1 : 0;
+        cell += text[at];
+      }
+    } else {
+      const end = /[,\r\n]|$/g;
+      end.lastIndex = at;
+      const to = end.exec(text)!.index;
+      cell = text.slice(at, to);
+      at = to;
+    }
+    cells.push(cell);
+    if (text[at] === ",") {
+      ++at;
+      continue;
+    }
+    at += text[at] === "\r" ? 1 : 0;
+    if (at < text.length && text[at] !== "\n") {
+      return new CsvError(line, "text after quote");
+    }
+    return {cells, at: at + 1, line: line + 1};
+  }
+}

@@ -1,0 +1,5 @@
+// Texts that esbuild puts into the bundle (--loader:.glsl=text).
+declare module "*.glsl" {
+  const text: string;
+  export default text;
+}

@@ -1,0 +1,371 @@
+// IslandView: one island in a rectangle of the canvas: its camera, its scene for a painter, and what is at a point of it.
+import type {Camera, Drawing, Look, PopulationColumns, Tool} from "../core/messages";
+import {type Snapshot, steps_per_px} from "../core/snapshot";
+import {
+  clamped,
+  fitted,
+  is_whole_island_visible,
+  minimap_frame,
+  minimap_place,
+  type Place,
+  to_world,
+  visible_part
+} from "./camera";
+import {Colouring} from "./colouring";
+import {count_organisms, count_overview, density_scale, DensityGrid, join_tiles} from "./density";
+import type {KeptSnapshot} from "./interpolator";
+import {colours_of, default_look, island_colours, styles_of} from "./look";
+import {dots_radius_pixels, shows_details, too_many_for_dots, too_small_to_see, typical_radius_px} from "./marks";
+import {circle_at} from "./picking";
+import type {Painter, Scene} from "./scene";
+import {labels_of} from "./scene_labels";
+import {StreamedIsland} from "./streamed_island";
+import {StreamedRegion, type WantedView} from "./streamed_region";
+
+export interface Picked {
+  organism: number|null; // ids
+  food: number|null;
+  poison: number|null;
+  x_px: number; // the point of the island
+  y_px: number;
+  generation: number;
+}
+
+/** What the page sets. */
+export interface ViewSettings {
+  place: Place;
+  camera: Camera|null; // null: the whole island, also after a change of the size
+  look: Look;
+  selected: number|null; // ids
+  hovered: number|null; // the organism that a panel points at
+  follows: boolean; // the camera keeps the selected organism in the middle
+  pointer: {x: number; y: number}|null; // CSS pixels in the place
+  tool: Tool;
+  population: PopulationColumns|null;
+}
+
+const hover_radius = 12; // CSS pixels
+
+export function default_settings(place: Place): ViewSettings {
+  return {
+    place,
+    camera: null,
+    look: default_look("vivid", "dark"),
+    selected: null,
+    hovered: null,
+    follows: false,
+    pointer: null,
+    tool: "select",
+    population: null,
+  };
+}
+
+export class IslandView {
+  readonly island = new StreamedIsland();
+  settings: ViewSettings;
+  #population_version = 0;
+  readonly #region = new StreamedRegion();
+  readonly #colouring = new Colouring();
+  readonly #density = new DensityGrid();
+  readonly #overview = new DensityGrid();
+  #overview_version = 0;
+  #is_dirty = true;
+  #drawn_blend = 1;
+  #drawn_camera: Camera|null = null;
+  #drawn: Drawing|null = null;
+  #drawn_key = "";
+
+  /** painter: null while the graphics context is lost. */
+  constructor(settings: ViewSettings, public painter: Painter|null) {
+    this.settings = settings;
+  }
+
+  change(settings: Partial<ViewSettings>): void {
+    this.settings = {...this.settings, ...settings};
+    this.#population_version += settings.population === undefined ? 0 : 1;
+    this.#is_dirty = true;
+  }
+
+  add(snapshot: Snapshot, now_ms: number): void {
+    this.island.add(snapshot, now_ms, this.camera(), this.settings.place, this.settings.look);
+    this.#is_dirty = true;
+  }
+
+  /** Takes densities of the whole island for the minimap, while only a part is streamed. */
+  add_overview(snapshot: Snapshot): void {
+    this.island.add_overview(snapshot);
+    this.#is_dirty = true;
+  }
+
+  /** Drops the snapshots. Call it before another world or island is shown. */
+  clear(): void {
+    this.island.clear();
+    this.#region.forget();
+    this.#is_dirty = true;
+  }
+
+  /** Whether draw() would draw something else than the last time. */
+  needs_frame(now_ms: number): boolean {
+    return this.#is_dirty || this.#blend_at(now_ms) !== this.#drawn_blend;
+  }
+
+  draw(now_ms: number): void {
+    const {painter} = this;
+    if (painter === null) {
+      return;
+    }
+    this.#is_dirty = false;
+    const blend = (this.#drawn_blend = this.#blend_at(now_ms));
+    this.#follow(blend);
+    const camera = (this.#drawn_camera = this.camera());
+    if (camera === null) {
+      painter.draw(this.#scene({x_px: 0, y_px: 0, zoom: 1}, blend, painter));
+      return;
+    }
+    const scene = this.#scene(camera, blend, painter);
+    painter.draw(scene);
+    this.#describe(scene, painter);
+  }
+
+  /** The camera of the last frame; differs from the one that was set while it follows an organism. Null before the first
+   *  snapshot. */
+  camera(): Camera|null {
+    const {size} = this.island, {camera, place} = this.settings;
+    return size === null               ? null :
+      camera === null || place.is_tile ? fitted(place, size, place.frame) :
+                                         clamped(camera, place, size);
+  }
+
+  /** Returns what is drawn at a point: the organism or item whose centre is within `radius` CSS pixels, or whose body
+   *  contains the point. Null: the point is not on the island. */
+  pick(x: number, y: number, radius: number): Picked|null {
+    const camera = this.#drawn_camera;
+    const {info, id, food, poison} = this.island.at.latest;
+    if (camera === null || info === null) {
+      return null;
+    }
+    const at = to_world(camera, this.settings.place, {x, y});
+    if (at.x < 0 || at.y < 0 || at.x > info.width_px || at.y > info.height_px) {
+      return null;
+    }
+    const organism = this.#organism_at(camera, x, y, radius);
+    const item_at = (items: typeof food): number|null => {
+      const found = circle_at(
+        at.x, at.y, items.whole, (i) => items.x[i]! / steps_per_px, (i) => items.y[i]! / steps_per_px,
+        () => info.item_radius_px, 1 / camera.zoom, radius);
+      return found < 0 ? null : items.id[found]!;
+    };
+    return {
+      organism: organism < 0 ? null : id[organism]!,
+      food: item_at(food),
+      poison: item_at(poison),
+      x_px: at.x,
+      y_px: at.y,
+      generation: info.generation,
+    };
+  }
+
+  /** What was drawn last; another object only after a change. Null before the first snapshot. */
+  drawing(): Drawing|null {
+    return this.#drawn;
+  }
+
+  /** The View to request now (SetView), if the island is streamed in part; null if the one returned last is still
+   *  suitable. */
+  view_to_request(now_ms: number): WantedView|null {
+    const camera = this.camera();
+    return camera === null ? null : this.#region.update(camera, this.settings.place, this.detail(camera), now_ms);
+  }
+
+  /** The level of detail that is useful for what is drawn. */
+  detail(camera = this.camera()): WantedView["detail"] {
+    if (camera === null) {
+      return "DETAIL_FULL";
+    }
+    const {look, selected} = this.settings;
+    const details_of_all = (look.perception === "all" || look.forces === "all") && shows_details(camera);
+    const no_single_organism_matters = look.colour_by === "" && !details_of_all && selected === null;
+    const small = typical_radius_px * camera.zoom < dots_radius_pixels;
+    return this.#wants_density(camera)    ? "DETAIL_DENSITY" :
+      small && no_single_organism_matters ? "DETAIL_DOTS" :
+                                            "DETAIL_FULL";
+  }
+
+  /** Call after the subscription was renewed. */
+  forget_view(): void {
+    this.#region.forget();
+  }
+
+  #blend_at(now_ms: number): number {
+    return this.settings.look.interpolate ? this.island.at.blend_at(now_ms) : 1;
+  }
+
+  /** Keeps the followed organism in the centre. */
+  #follow(blend: number): void {
+    const {at} = this.island, {follows, selected, place} = this.settings;
+    const row = follows && !place.is_tile ? at.latest.index_of(selected) : -1;
+    if (row >= 0) {
+      const {zoom} = this.camera()!;
+      this.settings.camera = {x_px: at.x_at(row, blend) / steps_per_px, y_px: at.y_at(row, blend) / steps_per_px, zoom};
+    }
+  }
+
+  #organism_at(camera: Camera, x: number, y: number, radius: number): number {
+    const {at} = this.island, place = to_world(camera, this.settings.place, {x, y});
+    return circle_at(
+      place.x, place.y, at.latest.count, (i) => at.x_at(i, this.#drawn_blend) / steps_per_px,
+      (i) => at.y_at(i, this.#drawn_blend) / steps_per_px, (i) => at.latest.radius[i]! / steps_per_px, 1 / camera.zoom,
+      radius);
+  }
+
+  #wants_density(camera: Camera): boolean {
+    const {look, place} = this.settings, {latest} = this.island.at;
+    const count = this.island.organism_count;
+    const is_too_many = (this.painter?.organisms_max ?? Infinity) < count ||
+      (too_small_to_see(camera) && too_many_for_dots(camera, place, latest.info!, count));
+    return look.density && look.colour_by === "" && is_too_many;
+  }
+
+  /** The population, if it is that of the shown generation. */
+  #current_population(): PopulationColumns|null {
+    const {info} = this.island.at.latest, of = this.settings.population;
+    return of !== null && info !== null && of.generation === info.generation && of.island === info.island ? of : null;
+  }
+
+  #scene(camera: Camera, blend: number, painter: Painter): Scene {
+    const {at, trails, flashes, health_max, version} = this.island;
+    const {look, place, pointer, tool, selected, hovered} = this.settings, {latest} = at;
+    const population = this.#current_population();
+    this.#colouring.update(
+      {look, latest, snapshot_version: version, population, population_version: this.#population_version, health_max});
+    const scene: Scene = {
+      place,
+      camera,
+      look,
+      colours: colours_of(look),
+      styles: styles_of(look),
+      at,
+      blend,
+      shown_s: at.shown_s(blend),
+      snapshot_version: version,
+      colours_version: this.#colouring.version,
+      organism_colours: this.#colouring.colours,
+      health_max,
+      selected: latest.index_of(selected),
+      pointed_at: pointer !== null && tool === "select" ?
+        this.#organism_at(camera, pointer.x, pointer.y, hover_radius) :
+        latest.index_of(hovered),
+      population: population !== null && shows_details(camera) ? population : null,
+      trails: look.trails && place.has_details && shows_details(camera) ? trails : null,
+      flashes: look.flashes ? flashes.all : [],
+      shows: "organisms",
+      density: this.#density,
+      density_scale: null,
+      labels: [],
+      minimap: null,
+      preview: null,
+    };
+    if (latest.info !== null) {
+      this.#choose_detail(scene);
+      scene.labels = scene.shows !== "density" && place.has_details ? labels_of(scene, painter) : [];
+      scene.minimap = this.#minimap(camera);
+      scene.preview = this.#preview(camera, latest);
+    }
+    return scene;
+  }
+
+  /** After a change of the level of detail, densities are drawn until the first snapshot with the new detail arrives. */
+  #choose_detail(scene: Scene): void {
+    const {at, camera, place, look, blend} = scene, {latest} = at, info = latest.info!;
+    if (latest.densities.length > 0) {
+      scene.shows = "density";
+      join_tiles(this.#density, latest.densities, info.tile_px);
+    } else if (this.#wants_density(camera)) {
+      scene.shows = "density";
+      count_organisms(this.#density, at, blend, visible_part(camera, place), this.island.size!, camera.zoom);
+    } else if (latest.organism_dots.count > 0) {
+      scene.shows = "dots";
+    }
+    scene.density_scale = scene.shows === "density" ? density_scale(look.palette, this.#density) : null;
+  }
+
+  #minimap(camera: Camera): Scene["minimap"] {
+    const {look, place} = this.settings, island = this.island.size!;
+    if (!look.minimap || is_whole_island_visible(camera, place, island)) {
+      return null;
+    }
+    const {whole, whole_version, version: snapshot_version} = this.island;
+    const version = whole === null ? snapshot_version : -1 - whole_version;
+    if (this.#overview_version !== version) {
+      this.#overview_version = version;
+      const from = whole ?? this.island.at.latest;
+      count_overview(this.#overview, from, island, from.info!.tile_px);
+    }
+    const map = minimap_place(place, island);
+    return {
+      place: map,
+      frame: minimap_frame(map, camera, place),
+      grid: this.#overview,
+      scale: density_scale("viridis", this.#overview),
+      version: this.#overview_version,
+    };
+  }
+
+  /** Of what a click would place. */
+  #preview(camera: Camera, {info}: KeptSnapshot): Scene["preview"] {
+    const {pointer, tool} = this.settings;
+    if (pointer === null || (tool !== "food" && tool !== "poison" && tool !== "organism")) {
+      return null;
+    }
+    const radius_px = tool === "organism" ? typical_radius_px : info!.item_radius_px;
+    const colour = tool === "organism" ? island_colours.classic.body : island_colours.classic[tool];
+    return {...pointer, radius: Math.max(radius_px * camera.zoom, 3), colour};
+  }
+
+  #what_is_pointed_at(scene: Scene): Drawing["pointed_at"] {
+    const {pointer, tool} = this.settings;
+    if (pointer === null) {
+      return null;
+    }
+    if (tool === "select") {
+      return {organism: scene.pointed_at < 0 ? null : scene.at.latest.id[scene.pointed_at]!, food: null, poison: null};
+    }
+    const picked = this.pick(pointer.x, pointer.y, hover_radius);
+    return picked === null ? null : {organism: picked.organism, food: picked.food, poison: picked.poison};
+  }
+
+  /** Keeps a description of the frame for legends and hints. */
+  #describe(scene: Scene, painter: Painter): void {
+    const {at, density_scale: scale} = scene, {look} = this.settings, {health_max} = this.island;
+    const pointed_at = this.#what_is_pointed_at(scene);
+    const by_lineage = look.colour_by === "lineage" ? this.#current_population() : null;
+    const key = [
+      scene.shows,
+      scale?.high,
+      this.#density.cell_px,
+      health_max,
+      at.latest.has_headings,
+      look.colour_by,
+      this.#colouring.legend_key,
+      by_lineage === null,
+      pointed_at?.organism,
+      pointed_at?.food,
+      pointed_at?.poison,
+      pointed_at === null,
+    ].join();
+    if (key === this.#drawn_key) {
+      return;
+    }
+    this.#drawn_key = key;
+    this.#drawn = {
+      renderer: painter.kind,
+      shows: scene.shows,
+      density: scale === null ? null : {cell_px: this.#density.cell_px, most: scale.high},
+      health_max,
+      gene_range: this.#colouring.gene_range,
+      headings: at.latest.has_headings,
+      pointed_at,
+      ...this.#colouring.lineages(by_lineage),
+    };
+  }
+}

@@ -1,0 +1,12 @@
+// genes: names and values of genes for readers.
+import {tenths} from "./numbers";
+
+/** "normal_speed" → "normal speed". */
+export function gene_label(name: string): string {
+  return name.replace(/_/g, " ");
+}
+
+/** Genes of the body are about 100, weights and free genes about 1. */
+export function gene_number(value: number): string {
+  return Math.abs(value) >= 10 ? tenths(value) : value.toFixed(2).replace("-", "−");
+}

@@ -1,0 +1,155 @@
+// Connection: the socket of the worker, and the protocol core behind it.
+//
+// Reconnecting   While the connection is lost, it tries again after 0.25 s, then after twice as long, up to 5 s. The core then
+//                subscribes again and repeats the unanswered requests.
+// Silence        A server that sends nothing for silence_ms gets a query, which a living server answers. A server that sends
+//                nothing for silence_max_ms has disappeared without closing the connection.
+import {ClientCore, type CoreEvent} from "../core/client_core";
+import type {ConnectionState} from "../core/messages";
+import {worker_texts} from "../texts/worker";
+import type {Timings} from "./timings";
+
+const client_name = "browser";
+const backoff_min_ms = 250, backoff_max_ms = 5000;
+const silence_ms = 10_000, silence_max_ms = 25_000, silence_interval_ms = 5000;
+
+export interface ConnectionListener {
+  /** Takes what the core reports, in order. */
+  take(events: CoreEvent[]): void;
+  changed(state: ConnectionState): void;
+}
+
+export class Connection {
+  core: ClientCore|null = null;
+  /** Whether panes may subscribe to snapshots. */
+  may_stream = true;
+  readonly #listener: ConnectionListener;
+  readonly #timings: Timings;
+  #url = "";
+  #socket: WebSocket|null = null;
+  #attempt = 0; // timer of the next attempt
+  #backoff_ms = backoff_min_ms;
+  #received_ms = 0; // when the last bytes arrived
+  #has_queried = false; // the silence has been answered with a query
+
+  constructor(listener: ConnectionListener, timings: Timings) {
+    this.#listener = listener;
+    this.#timings = timings;
+    setInterval(() => this.#watch_silence(), silence_interval_ms);
+  }
+
+  /** Replaces the present session by one that open() begins. */
+  begin(url: string, token: string, descriptor: Uint8Array): ClientCore {
+    clearTimeout(this.#attempt);
+    if (this.core) {
+      const ended = this.core;
+      this.core = null;
+      this.#listener.take(ended.close());
+    }
+    this.#socket?.close();
+    this.#socket = null;
+    this.#url = url;
+    this.#backoff_ms = backoff_min_ms;
+    return (this.core = new ClientCore(descriptor, {client_name, client_version: "", token, server: this.#host}));
+  }
+
+  open(): void {
+    clearTimeout(this.#attempt);
+    const socket = (this.#socket = new WebSocket(this.#url));
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      if (this.#socket === socket) {
+        this.#received_ms = performance.now();
+        this.core!.opened();
+        this.flush();
+      }
+    };
+    socket.onmessage = (event: MessageEvent<unknown>) => {
+      if (this.#socket === socket && event.data instanceof ArrayBuffer) {
+        this.#receive(new Uint8Array(event.data));
+      }
+    };
+    socket.onclose = () => {
+      if (this.#socket === socket) {
+        this.lose((this.core!.connected ? worker_texts.lost : worker_texts.unreachable)(this.#host), "");
+      }
+    };
+  }
+
+  /** If no attempt to connect is under way, tries now rather than after the backoff. */
+  open_now(): void {
+    if (this.core && !this.core.failed && !this.#socket) {
+      this.open();
+    }
+  }
+
+  /** Sends what the core has queued. */
+  flush(): void {
+    if (this.#socket?.readyState === WebSocket.OPEN) {
+      const bytes = this.core?.outgoing();
+      if (bytes) {
+        this.#socket.send(bytes);
+      }
+    }
+  }
+
+  /** The core has reported a session. */
+  opened(): void {
+    this.#backoff_ms = backoff_min_ms;
+    this.#report("open", "", "");
+  }
+
+  /** Ends the connection, and tries again unless the core has failed. */
+  lose(message: string, code: string): void {
+    const ended = this.#socket, core = this.core!;
+    this.#socket = null;
+    ended?.close();
+    const {failed} = core;
+    const events = core.lost({message, code});
+    this.#report(failed ? "refused" : "lost", failed?.message ?? message, failed?.code ?? code);
+    this.#listener.take(events); // the page knows why its requests fail
+    if (!failed) {
+      ++this.#timings.reconnect_count;
+      // If the server is full, another attempt soon would take the place of another client.
+      this.#backoff_ms = core.retry_late ? backoff_max_ms : this.#backoff_ms;
+      this.#attempt =
+        setTimeout(() => this.open(), this.#backoff_ms * (0.8 + 0.4 * Math.random())) as unknown as number;
+      this.#backoff_ms = Math.min(backoff_max_ms, 2 * this.#backoff_ms);
+    }
+  }
+
+  get #host(): string {
+    return new URL(this.#url).host;
+  }
+
+  #receive(bytes: Uint8Array): void {
+    this.#received_ms = performance.now();
+    this.#has_queried = false;
+    const events = this.core!.received(bytes);
+    const decoded = events.filter((event) => event.kind === "snapshot").length;
+    if (decoded > 0) {
+      this.#timings.decoded((performance.now() - this.#received_ms) / decoded);
+    }
+    this.#listener.take(events);
+    this.flush();
+  }
+
+  #watch_silence(): void {
+    const silent_ms = performance.now() - this.#received_ms;
+    if (!this.core?.connected || !this.#socket || silent_ms < silence_ms) {
+      return;
+    }
+    if (silent_ms > silence_max_ms && this.#has_queried) {
+      this.lose(worker_texts.silent(this.#host, Math.round(silent_ms / 1000)), "");
+    } else if (!this.#has_queried) {
+      this.#has_queried = true;
+      this.core.request({list_worlds: {}}, true);
+      this.flush();
+    }
+  }
+
+  #report(phase: ConnectionState["phase"], message: string, code: string): void {
+    const sentence = message.charAt(0).toUpperCase() + message.slice(1);
+    this.#listener.changed({phase, message: sentence, code, welcome: this.core?.welcome ?? null});
+  }
+}
