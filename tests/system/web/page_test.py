@@ -509,6 +509,18 @@ class Past(Case):
                 browser.press("Close", ".banners")
                 self.assertEqual(browser.text(".banners"), "")
 
+    def test_a_typed_generation_is_shown(self):
+        browser = self.browser
+        browser.open(self.page(self.served))
+        field = browser.element(".time-generation")
+        browser.type_into(field, "2")
+        self.shown(2, 0)
+        for wrong in ("0", "9", "x"):
+            browser.type_into(field, wrong)
+            browser.wait_for_text(f'Generation: got "{wrong}", allowed whole numbers from 1 to 5.', ".timeline [role=alert]")
+        field.send_keys(Keys.ESCAPE)
+        self.assertEqual(field.get_attribute("value"), "2")
+
     def test_the_copied_link_leads_back(self):
         browser = self.browser
         browser.open(self.page(self.served, "#world=default&generation=2&tick=30&island=0&organism=7"))

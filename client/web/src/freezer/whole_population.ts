@@ -2,14 +2,14 @@
 //
 // The server answers page by page. If another generation begins or an organism is placed before the last page, the
 // reading starts again.
-import type {Message} from "../core/messages";
+import type {GetPopulation, Population as PopulationPage} from "../core/protocol";
 import {freezer_texts} from "../texts/freezer";
 import type {Population} from "./population_csv";
 
 const attempts_max = 10;
 
 /** Sends a get_population with these fields, and returns the answer. */
-export type AskForPage = (fields: {world: string; island: number; first_organism: number}) => Promise<Message>;
+export type AskForPage = (fields: GetPopulation) => Promise<PopulationPage>;
 
 /** Returns the generation and its genes. Rejects with a sentence if no generation lasts long enough. */
 export async function whole_population(
@@ -33,13 +33,13 @@ async function attempt_to_read(ask: AskForPage, world: string, island_count: num
     let rows = 0, genes = new Float32Array(0), total = 1;
     while (rows < total) {
       const page = await ask({world, island, first_organism: rows});
-      const count: number = page.count ?? 0, of_page = Number(page.generation ?? 0);
+      const {count = 0, generation: of_page = 0, organism_count = 0} = page;
       generation ||= of_page;
       if (rows === 0) {
-        total = page.organism_count ?? 0;
+        total = organism_count;
         genes = new Float32Array(total * gene_count);
       }
-      if (of_page !== generation || (page.organism_count ?? 0) !== total) {
+      if (of_page !== generation || organism_count !== total) {
         return null;
       }
       if (total === 0) {

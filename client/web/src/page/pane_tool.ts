@@ -31,7 +31,8 @@ export class PaneTool {
     this.#on_change();
   }
 
-  /** Chooses the tool "organism" with these genes. Returns why it cannot act in this world, as a sentence; empty if it can. */
+  /** Chooses the tool "organism" with these genes. Returns why it cannot act in this world, as a sentence; empty if it
+   *  can. */
   place_copies_of(model: PlacedModel): string {
     const problem = this.problem("organism", model);
     if (problem === "") {

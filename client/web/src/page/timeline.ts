@@ -5,11 +5,20 @@
 // Owner    App; one per pane.
 // Seeking  While a seek runs, only the newest moment that the user asks for is kept.
 import {marks_of} from "../plots/change_marks";
-import {with_separators} from "../texts/numbers";
+import {number_in, with_separators} from "../texts/numbers";
+import {capitalised} from "../texts/texts";
+import {timeline_texts} from "../texts/timeline";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 
-import {joined_marks, marked_generations, TimeScale, type JoinedMark, type Moment} from "../world/time_scale";
+import {
+  joined_marks,
+  marked_generations,
+  TimeScale,
+  type JoinedMark,
+  type Moment,
+  type RunRange
+} from "../world/time_scale";
 import type {GenerationStatistics} from "../core/protocol";
 import type {ViewedWorld} from "../world/world";
 
@@ -42,6 +51,15 @@ export class Timeline {
   #marks = h("div", {class: "time-marks"});
   #bubble = h("div", {class: "time-bubble", hidden: true});
   #problem = h("p", {class: "hint grow"});
+  #field = h("input", {
+    class: "field time-generation",
+    inputmode: "numeric",
+    autocomplete: "off",
+    onkeydown: (event: KeyboardEvent) => this.#type(event),
+    onblur: () => this.#end_typing()
+  });
+  #field_label = h("label", {class: "hint time-field"}, timeline_texts.generation, this.#field);
+  #wrong = h("p", {class: "error time-wrong", role: "alert"});
   #place = h("span", {class: "time-place hint"});
   #first: HTMLButtonElement;
   #previous: HTMLButtonElement;
@@ -108,10 +126,11 @@ export class Timeline {
       },
         this.#labels, h("div", {class: "time-bar"}, this.#fill), this.#marks, this.#knob, this.#bubble);
     this.#buttons =
-      h("div", {class: "time-buttons"}, this.#first, this.#previous, this.#play, this.#next, this.#last, this.#place);
+      h("div", {class: "time-buttons"}, this.#first, this.#previous, this.#play, this.#next, this.#last,
+        this.#field_label, this.#place);
     this.element =
       h("div", {class: "timeline", role: "group", "aria-label": "Time line"}, this.#buttons, this.#line, this.#problem,
-        h("div", {class: "time-buttons time-right"}, this.#live, copy));
+        h("div", {class: "time-buttons time-right"}, this.#live, copy), this.#wrong);
     const observer = new ResizeObserver((entries) => {
       this.#width_px = entries[entries.length - 1]!.contentRect.width;
       this.#refresh();
@@ -157,8 +176,18 @@ export class Timeline {
     set_attribute(this.#line, "aria-valuemax", String(scale.range.last_generation));
     set_attribute(this.#line, "aria-valuenow", String(snapshot.generation));
     set_attribute(this.#line, "aria-valuetext", `${is_past ? tick_text : "live"}, ${generation_text}`);
+    this.#refresh_field(scale, target?.generation ?? snapshot.generation);
     this.#rebuild_soon(scale);
     this.#show_bubble(scale);
+  }
+
+  /** Shows the generation in the field, unless the user types there. */
+  #refresh_field(scale: TimeScale, generation: number): void {
+    const title = timeline_texts.generation_help(this.#first_generation(scale.range), scale.range.last_generation);
+    set_attribute(this.#field, "title", title);
+    if (document.activeElement !== this.#field) {
+      this.#field.value = String(generation);
+    }
   }
 
   /** The position of the moment that a seek leads to; null if the page does not know it. */
@@ -356,6 +385,35 @@ export class Timeline {
       return;
     }
     event.preventDefault();
+  }
+
+  /** The first generation that may be typed. The history of a live world may begin later than its run. */
+  #first_generation(range: RunRange): number {
+    return this.#world.is_replay ? range.first_generation : 1;
+  }
+
+  /** Enter in the field shows the generation that was typed; Escape forgets it. */
+  #type(event: KeyboardEvent): void {
+    if (event.key === "Escape") {
+      this.#field.blur();
+    } else if (event.key === "Enter") {
+      const range = this.#world.past.range;
+      const text = this.#field.value.replace(/,/g, "");
+      const wanted =
+        range && number_in(timeline_texts.generation, text, this.#first_generation(range), range.last_generation);
+      set_text(this.#wrong, typeof wanted === "string" ? `${capitalised(wanted)}.` : "");
+      set_attribute(this.#field, "aria-invalid", typeof wanted === "string" ? "true" : null);
+      if (typeof wanted === "number") {
+        this.#go({generation: wanted});
+        this.#field.select();
+      }
+    }
+  }
+
+  #end_typing(): void {
+    set_text(this.#wrong, "");
+    set_attribute(this.#field, "aria-invalid", null);
+    this.#refresh();
   }
 
   #to_first(): void {

@@ -1,27 +1,32 @@
 // The panels of the column, in the order of their tabs.
+import {panels_texts as texts} from "../texts/panels";
+import type {Panel, PanelContext} from "../world/panel_context";
+
 import {EventsPanel} from "./events";
 import {LazyPanel} from "./lazy";
-import type {Panel, PanelContext} from "../world/panel_context";
 import {ParametersPanel} from "./parameters";
 import {RunPanel} from "./run";
 import {ViewPanel} from "./view";
 import {WorldsPanel} from "./worlds";
+
+type Later = typeof import("./loaded_later");
+
+/** A panel whose code is in panels.js. */
+function later(name: string, title: string, make: (loaded: Later, context: PanelContext) => Panel):
+  (context: PanelContext) => Panel {
+  return (context) => new LazyPanel(name, title, async () => make(await import("./loaded_later"), context));
+}
 
 export const panels: ((context: PanelContext) => Panel)[] = [
   (context) => new WorldsPanel(context),
   (context) => new RunPanel(context),
   (context) => new ParametersPanel(context),
   (context) => new ViewPanel(context),
-  (context) =>
-    new LazyPanel("organism", "Organism", async () => new (await import("./loaded_later")).OrganismPanel(context)),
-  (context) =>
-    new LazyPanel("glass box", "Glass box", async () => new (await import("./loaded_later")).GlassBoxPanel(context)),
-  (context) =>
-    new LazyPanel("family", "Family tree", async () => new (await import("./loaded_later")).FamilyPanel(context)),
-  (context) => new LazyPanel("plots", "Plots", async () => new (await import("./loaded_later")).PlotsPanel(context)),
+  later("organism", texts.organism, ({OrganismPanel}, context) => new OrganismPanel(context)),
+  later("glass box", texts.glass_box, ({GlassBoxPanel}, context) => new GlassBoxPanel(context)),
+  later("family", texts.family, ({FamilyPanel}, context) => new FamilyPanel(context)),
+  later("plots", texts.plots, ({PlotsPanel}, context) => new PlotsPanel(context)),
   (context) => new EventsPanel(context),
-  (context) =>
-    new LazyPanel("freezer", "Freezer", async () => new (await import("./loaded_later")).FreezerPanel(context)),
-  (context) =>
-    new LazyPanel("physics", "Physics", async () => new (await import("./loaded_later")).PhysicsPanel(context)),
+  later("freezer", texts.freezer, ({FreezerPanel}, context) => new FreezerPanel(context)),
+  later("physics", texts.physics, ({PhysicsPanel}, context) => new PhysicsPanel(context)),
 ];

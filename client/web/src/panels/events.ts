@@ -1,10 +1,12 @@
-// EventsPanel: what happened on the server since the page was opened, and the journal of a run: who changed what, and when.
-import {with_separators} from "../texts/numbers";
+// EventsPanel: what happened on the server since the page was opened, and the journal of a run: who changed what, and
+// when.
+import {common_texts} from "../texts/common";
+import {events_texts as texts} from "../texts/events";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {event_text} from "../world/event_text";
 
-import type {Message} from "../core/messages";
+import type {Event as ProtocolEvent} from "../core/protocol";
 import type {Panel, PanelContext} from "../world/panel_context";
 
 const rows_max = 500;
@@ -18,9 +20,17 @@ interface Row {
   progress: boolean; // of the simulation itself, not of a client
 }
 
+/** A row of the table `events` as JSON (ExportRun). */
+interface JournalLine {
+  tick: number;
+  kind: string; // "set_parameters"
+  client?: string;
+  request?: {[kind: string]: {[field: string]: unknown}};
+}
+
 export class EventsPanel implements Panel {
   readonly name = "events";
-  readonly title = "Events";
+  readonly title = texts.title;
   readonly element: HTMLElement;
 
   #rows: Row[] = [];
@@ -28,8 +38,8 @@ export class EventsPanel implements Panel {
   #shown_world = "";
   #this_world = h("input", {type: "checkbox", onchange: () => this.#rebuild()});
   #progress = h("input", {type: "checkbox", onchange: () => this.#rebuild()});
-  #list = h("ol", {class: "journal", "aria-label": "Events, newest first"});
-  #empty = h("p", {class: "hint"}, "Nothing has happened since this page was opened.");
+  #list = h("ol", {class: "journal", "aria-label": texts.list});
+  #empty = h("p", {class: "hint"}, texts.none_yet);
 
   #journal: {world: string; rows: HTMLElement[]}|null = null; // shown instead of the events
   #read: HTMLButtonElement;
@@ -44,8 +54,8 @@ export class EventsPanel implements Panel {
       "", context.notify,
       () => (this.#journal ? this.#show_journal(null) : void context.attempt(() => this.#read_journal())));
     this.#choices =
-      h("div", {class: "row"}, h("label", {class: "check"}, this.#this_world, "this world only"),
-        h("label", {class: "check"}, this.#progress, "generations and migrations"));
+      h("div", {class: "row"}, h("label", {class: "check"}, this.#this_world, texts.this_world),
+        h("label", {class: "check"}, this.#progress, texts.progress));
     this.element =
       h("div", {class: "panel panel-events"}, h("div", {class: "row"}, this.#read), this.#title, this.#choices,
         this.#empty, this.#list);
@@ -54,12 +64,12 @@ export class EventsPanel implements Panel {
 
   refresh(): void {
     const info = this.#context.world().info;
-    set_text(this.#read, this.#journal ? "Show the events" : "Show all commands of the run");
+    set_text(this.#read, this.#journal ? texts.show_events : texts.show_commands);
     set_allowed(
       this.#read,
       this.#journal                   ? "" :
-        !info                         ? "No world is open." :
-        !info.storage && !info.replay ? "The server does not store this run." :
+        !info                         ? common_texts.no_world :
+        !info.storage && !info.replay ? texts.not_stored :
                                         "");
     if (this.#journal) {
       return;
@@ -69,16 +79,11 @@ export class EventsPanel implements Panel {
     }
   }
 
-  #take(event: Message): void {
+  #take(event: ProtocolEvent): void {
     const [text, progress] = event_text(event);
     if (text) {
-      this.#rows.unshift({
-        time_ms: Number(event.time_ms ?? Date.now()),
-        world: event.world ?? "",
-        tick: Number(event.tick ?? 0),
-        text,
-        progress
-      });
+      this.#rows.unshift(
+        {time_ms: event.time_ms ?? Date.now(), world: event.world ?? "", tick: event.tick ?? 0, text, progress});
       this.#trim(true);
       this.#trim(false);
       this.#changed = true;
@@ -102,11 +107,10 @@ export class EventsPanel implements Panel {
       text += decoder.decode(part.text ?? new Uint8Array(), {stream: true});
     }
     const lines =
-      text.split("\n").filter(Boolean).map((line): Message => JSON.parse(line)).reverse().slice(0, rows_max);
+      text.split("\n").filter(Boolean).map((line): JournalLine => JSON.parse(line)).reverse().slice(0, rows_max);
     this.#show_journal({
       world,
-      rows: lines.map(
-        (line) => row_of(`tick ${with_separators(line.tick)} · ${line.client || "a local client"}`, command_text(line)))
+      rows: lines.map((line) => row_of(texts.command_place(line.tick, line.client ?? ""), command_text(line)))
     });
   }
 
@@ -115,9 +119,9 @@ export class EventsPanel implements Panel {
     this.#choices.hidden = journal !== null;
     this.#title.hidden = journal === null;
     if (journal) {
-      set_text(this.#title, `Commands of ${journal.world}, newest first`);
+      set_text(this.#title, texts.commands_of(journal.world));
       this.#empty.hidden = journal.rows.length > 0;
-      set_text(this.#empty, "The run has received no command.");
+      set_text(this.#empty, texts.no_command);
       this.#list.replaceChildren(...journal.rows);
     } else {
       this.#rebuild();
@@ -134,14 +138,10 @@ export class EventsPanel implements Panel {
                        (!this.#this_world.checked || row.world === "" || row.world === this.#shown_world))
                    .slice(0, rows_max);
     this.#empty.hidden = rows.length > 0;
-    set_text(
-      this.#empty,
-      this.#rows.length > 0 ? "No event is of this kind." : "Nothing has happened since this page was opened.");
+    set_text(this.#empty, this.#rows.length > 0 ? texts.none_of_kind : texts.none_yet);
     this.#list.replaceChildren(...rows.map(
-      (row) => row_of(
-        `${new Date(row.time_ms).toLocaleTimeString("en-GB")}${row.world ? ` · ${row.world}` : ""}${
-          row.tick ? ` · tick ${with_separators(row.tick)}` : ""}`,
-        row.text)));
+      (row) =>
+        row_of(texts.event_place(new Date(row.time_ms).toLocaleTimeString("en-GB"), row.world, row.tick), row.text)));
   }
 }
 
@@ -150,9 +150,8 @@ function row_of(when: string, text: string): HTMLElement {
 }
 
 /** "set_parameters: {…}": a command of the journal with its fields, except the world. */
-function command_text(line: Message): string {
-  const {world: _world, ...fields}: Message = line.request?.[line.kind] ?? {}, text = JSON.stringify(fields);
-  return line.kind +
-    (text === "{}" ? "" :
-                     `: ${text.length > fields_characters_max ? text.slice(0, fields_characters_max) + " …" : text}`);
+function command_text({kind, request}: JournalLine): string {
+  const {world: _world, ...fields} = request?.[kind] ?? {}, text = JSON.stringify(fields);
+  const shown = text.length > fields_characters_max ? text.slice(0, fields_characters_max) + " …" : text;
+  return kind + (text === "{}" ? "" : `: ${shown}`);
 }

@@ -12,6 +12,7 @@ import {
 } from "../freezer/freezer";
 import {read_population, type Population} from "../freezer/population_csv";
 import {whole_population} from "../freezer/whole_population";
+import {common_texts} from "../texts/common";
 import {freezer_texts as texts} from "../texts/freezer";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -76,7 +77,7 @@ export class FreezerPanel implements Panel {
 
   refresh(): void {
     const world = this.#context.world();
-    const why = this.#busy ? texts.busy : world.info ? "" : texts.no_world;
+    const why = this.#busy ? texts.busy : world.info ? "" : common_texts.no_world;
     const why_none = why || (world.feed.healthiest.length > 0 ? "" : texts.none_alive);
     set_allowed(this.#keep_selected, why || (world.selection.info ? "" : texts.no_selection), texts.keep_selected_help);
     set_allowed(this.#keep_healthiest, why_none, texts.keep_healthiest_help);

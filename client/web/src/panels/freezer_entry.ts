@@ -1,9 +1,10 @@
-// FreezerEntry: the chosen entry of the freezer: places copies of it, begins a world with it, saves it as a file, renames
-// and deletes it, and compares its genes with those of the selected organism.
+// FreezerEntry: the chosen entry of the freezer: places copies of it, begins a world with it, saves it as a file,
+// renames and deletes it, and compares its genes with those of the selected organism.
 import {compared_genes, type ComparedGene, difference_counts, range_of_gene} from "../freezer/comparison";
 import type {Freezer, Kept} from "../freezer/freezer";
 import {body_genes, genes_of_organism, is_organism, type Population, population_text} from "../freezer/population_csv";
 import {gene_label, gene_number} from "../organism/texts";
+import {common_texts} from "../texts/common";
 import {freezer_texts as texts} from "../texts/freezer";
 import {number_in} from "../texts/numbers";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
@@ -74,7 +75,7 @@ export class FreezerEntry {
       texts.create, notify,
       () => void context.attempt(() => new_world_dialog(context).open(this.#shown?.kept.name ?? "")));
     const cancel = (form: () => HTMLElement, button: HTMLElement): HTMLElement =>
-      h("button", {type: "button", class: "button", onclick: () => close(form(), button)}, texts.cancel);
+      h("button", {type: "button", class: "button", onclick: () => close(form(), button)}, common_texts.cancel);
     this.#rename_form =
       h("form", {
         class: "confirm",
@@ -128,7 +129,7 @@ export class FreezerEntry {
     }
     const {server} = this.#context, world = this.#context.world();
     const {name, gene_names} = this.#shown.kept;
-    const why = !world.info         ? texts.no_world :
+    const why = !world.info         ? common_texts.no_world :
       !server.features.has("place") ? texts.cannot_place :
       world.is_replay               ? texts.replay :
                                       server.why_not("place", world.shown) ||

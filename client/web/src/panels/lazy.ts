@@ -1,4 +1,5 @@
 // LazyPanel: a panel whose code is loaded when it is first shown, so that the page itself loads faster.
+import {panels_texts} from "../texts/panels";
 import {h} from "../widgets/dom";
 import type {Panel} from "../world/panel_context";
 
@@ -15,10 +16,10 @@ export class LazyPanel implements Panel {
       this.#panel.refresh();
     } else if (!this.#loading) {
       this.#loading = true;
-      this.element.textContent = "Loading …";
+      this.element.textContent = panels_texts.loading;
       this.load().then((panel) => this.#show_loaded(panel), (error) => {
         this.#loading = false; // the next refresh() tries again
-        this.element.textContent = `The panel cannot be loaded: ${error instanceof Error ? error.message : error}.`;
+        this.element.textContent = panels_texts.not_loaded(error instanceof Error ? error.message : String(error));
       });
     }
   }

@@ -1,5 +1,5 @@
 // NewWorldDialog: creates a world from one of the experiments that evod brings along, with the parameters of the shown
-// world, or from the text of an experiment file. The first generation is drawn from the seed, or comes from the freezer.
+// world, or from the text of an experiment file. The first generation is drawn from the seed or comes from the freezer.
 import annealing from "../../../../experiments/annealing.json";
 import brains from "../../../../experiments/brains.json";
 import classic from "../../../../experiments/classic.json";
@@ -9,6 +9,7 @@ import rooy from "../../../../experiments/rooy.json";
 import trade_offs from "../../../../experiments/trade_offs.json";
 import {first_population} from "../freezer/first_population";
 import {type Kept, kept_count, kept_organisms} from "../freezer/freezer";
+import {common_texts} from "../texts/common";
 import {freezer_texts} from "../texts/freezer";
 import {new_world_texts as texts} from "../texts/new_world";
 import {capitalised} from "../texts/texts";
@@ -17,7 +18,7 @@ import {h, set_text} from "../widgets/dom";
 import {open_button} from "../widgets/files";
 import {gene_problem, name_characters_max, name_of_file, name_problem, unused_name} from "../world/names";
 
-import type {Message} from "../core/messages";
+import type {ParameterSet, ParameterValue} from "../core/protocol";
 import type {PanelContext} from "../world/panel_context";
 
 const presets: [string, {description: string}][] = [
@@ -27,13 +28,14 @@ const presets: [string, {description: string}][] = [
 const seed_max = (1n << 64n) - 1n;
 
 /** The text of an experiment file with the parameters and the schedule of a ParameterSet. */
-export function experiment_json(set: Message): string {
-  const value_of = (value: Message|undefined): unknown => value?.real ?? value?.count ?? value?.flag ?? value?.choice;
+export function experiment_json(set: ParameterSet): string {
+  const value_of = (value: ParameterValue|undefined): unknown =>
+    value?.real ?? value?.count ?? value?.flag ?? value?.choice;
   const experiment: {[name: string]: unknown} = {};
   for (const parameter of set.parameters ?? []) {
     const now = value_of(parameter.pending ?? parameter.value);
-    const later: Message[] = (set.schedule ?? []).filter((one: Message) => one.name === parameter.name);
-    experiment[parameter.name] = later.length === 0 ?
+    const later = (set.schedule ?? []).filter((one) => one.name === parameter.name);
+    experiment[parameter.name ?? ""] = later.length === 0 ?
       now :
       Object.fromEntries([["1", now], ...later.map((one) => [String(one.generation), value_of(one.value)])]);
   }
@@ -138,7 +140,7 @@ class NewWorldDialog {
         h("div", {class: "row"}, open, field)),
       h("label", {class: "check"}, this.#beside, texts.beside),
       h("div", {class: "row dialog-end"}, this.#error,
-        h("button", {type: "button", class: "button", onclick: () => this.#dialog.close()}, texts.cancel),
+        h("button", {type: "button", class: "button", onclick: () => this.#dialog.close()}, common_texts.cancel),
         this.#create));
   }
 
@@ -229,7 +231,7 @@ class NewWorldDialog {
   async #send(): Promise<void> {
     const name = this.#name.value.trim(), seed = this.#seed.value.trim();
     const seed_wrong = seed !== "" && !(/^\d{1,20}$/.test(seed) && BigInt(seed) <= seed_max);
-    const problem = name_problem("name", name) || (seed_wrong ? texts.wrong_seed(seed, seed_max) : "");
+    const problem = name_problem("name", name) || (seed_wrong ? common_texts.wrong_seed(seed, seed_max) : "");
     set_attribute(this.#name, "aria-invalid", name_problem("name", name) ? "true" : null);
     set_attribute(this.#seed, "aria-invalid", seed_wrong ? "true" : null);
     set_text(this.#error, capitalised(problem));

@@ -1,5 +1,7 @@
 // RunPanel: the state of the world in words; steps of ticks and generations; reset.
-import {number_in, with_separators} from "../texts/numbers";
+import {common_texts} from "../texts/common";
+import {number_in} from "../texts/numbers";
+import {run_texts as texts} from "../texts/run";
 import {outcome_words, state_word} from "../texts/texts";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -11,16 +13,16 @@ const seed_max = (1n << 64n) - 1n;
 
 export class RunPanel implements Panel {
   readonly name = "run";
-  readonly title = "Run";
+  readonly title = texts.title;
   readonly element: HTMLElement;
 
   #state = h("p", {});
   #waits = h("p", {class: "warning"});
   #where = h("p", {class: "hint"});
-  #ticks = h("input", {class: "field count", inputmode: "numeric", value: "60", "aria-label": "Ticks"});
-  #generations = h("input", {class: "field count", inputmode: "numeric", value: "10", "aria-label": "Generations"});
+  #ticks = h("input", {class: "field count", inputmode: "numeric", value: "60", "aria-label": texts.ticks});
+  #generations = h("input", {class: "field count", inputmode: "numeric", value: "10", "aria-label": texts.generations});
   #seed =
-    h("input", {class: "field grow", inputmode: "numeric", placeholder: "empty: the same seed", "aria-label": "Seed"});
+    h("input", {class: "field grow", inputmode: "numeric", placeholder: texts.seed_hint, "aria-label": texts.seed});
   #count_error = h("p", {class: "error", role: "alert"});
   #seed_error = h("p", {class: "error", role: "alert"});
   #one: HTMLButtonElement;
@@ -35,60 +37,51 @@ export class RunPanel implements Panel {
   constructor(context: PanelContext) {
     this.#context = context;
     const {notify} = context;
-    this.#one = guarded_button("One tick", notify, () => this.#attempt(() => context.world().control.step(1)));
+    this.#one = guarded_button(texts.one_tick, notify, () => this.#attempt(() => context.world().control.step(1)));
     this.#step = guarded_button(
-      "Step ticks", notify,
-      () => this.#with_number("ticks", this.#ticks, (ticks) => context.world().control.step(ticks)));
+      texts.step, notify, () => this.#with_number(texts.of_ticks, this.#ticks, (ticks) => context.world().control.step(ticks)));
     this.#run = guarded_button(
-      "Run generations", notify,
-      () => this.#with_number("generations", this.#generations, (count) => context.world().control.run(count)));
-    this.#reset = guarded_button("Reset …", notify, () => this.#ask());
+      texts.run, notify,
+      () => this.#with_number(texts.of_generations, this.#generations, (count) => context.world().control.run(count)));
+    this.#reset = guarded_button(texts.reset, notify, () => this.#ask());
     this.#confirm =
       h("div", {class: "confirm", hidden: true}, this.#question,
         h("div", {class: "row"},
-          h("button", {type: "button", class: "button button-danger", onclick: () => this.#do_reset()},
-            "Reset the world"),
-          h("button", {type: "button", class: "button", onclick: () => this.#close()}, "Cancel")));
+          h("button", {type: "button", class: "button button-danger", onclick: () => this.#do_reset()}, texts.do_reset),
+          h("button", {type: "button", class: "button", onclick: () => this.#close()}, common_texts.cancel)));
     this.element =
       h("div", {class: "panel panel-run"}, this.#state, this.#waits, this.#where, h("div", {class: "row"}, this.#one),
         h("div", {class: "row"}, this.#ticks, this.#step), h("div", {class: "row"}, this.#generations, this.#run),
-        this.#count_error, h("h3", {}, "Reset"),
-        h("p", {class: "hint"}, "Starts a new run at generation 1 with the current parameter settings."),
+        this.#count_error, h("h3", {}, texts.reset_title), h("p", {class: "hint"}, texts.reset_about),
         h("div", {class: "row"}, this.#seed, this.#reset), this.#seed_error, this.#confirm);
   }
 
   refresh(): void {
     const world = this.#context.world(), server = world.server, info = world.info;
     if (!info) {
-      set_text(this.#state, "No world is open yet.");
+      set_text(this.#state, common_texts.no_world_yet);
     } else {
-      let state = world.control.at_end ?
-        "end of the replay" :
-        state_word(world.control.state, server.storage, info.awaited_fitness !== undefined);
+      let state = world.control.at_end ? common_texts.end_of_replay :
+                                 state_word(world.control.state, server.storage, info.awaited_fitness !== undefined);
       if (world.control.state === "RUN_STATE_TERMINATED") {
-        state += `: ${outcome_words(info.outcome)}`;
+        state = texts.ended(state, outcome_words(info.outcome));
       } else if (info.run_until_generation !== undefined && world.control.state === "RUN_STATE_RUNNING") {
-        state += ` until generation ${with_separators(info.run_until_generation)}`;
+        state = texts.until(state, info.run_until_generation);
       }
-      set_text(this.#state, `${world.shown}: ${state}`);
+      set_text(this.#state, texts.state(world.shown, state));
     }
     const awaited = info?.awaited_fitness;
-    const islands: number = info?.island_count ?? 1, rated = islands - (awaited?.islands?.length ?? 0);
-    set_text(
-      this.#waits,
-      awaited ?
-        `Waits for fitness from a client; ${rated} of ${islands} ${islands === 1 ? "island" : "islands"} rated` :
-        "");
-    const generation = world.snapshot ? `generation ${with_separators(world.snapshot.generation)}, ` : "";
-    set_text(
-      this.#where, info ? `${generation}tick ${with_separators(world.feed.tick)}, seed ${String(info.seed ?? 0)}` : "");
-    const why_run = !info ? "No world is open." :
-                            server.why_not("run", world.shown) || (world.control.is_over ? "The run has ended." : "");
-    set_allowed(this.#one, why_run, "Runs one tick, then pauses (.).");
-    set_allowed(this.#step, why_run, "Runs this many ticks, then pauses.");
-    set_allowed(this.#run, why_run, "Runs this many generations to their end, then waits.");
-    const why_reset = !info ? "No world is open." :
-      world.is_replay       ? "This world is a replay and cannot be changed." :
+    const islands = info?.island_count ?? 1, rated = islands - (awaited?.islands?.length ?? 0);
+    set_text(this.#waits, awaited ? texts.waits(rated, islands) : "");
+    const generation = world.snapshot?.generation ?? null;
+    set_text(this.#where, info ? texts.where(generation, world.feed.tick, info.seed ?? 0) : "");
+    const why_run =
+      !info ? common_texts.no_world : server.why_not("run", world.shown) || (world.control.is_over ? texts.has_ended : "");
+    set_allowed(this.#one, why_run, texts.one_tick_help);
+    set_allowed(this.#step, why_run, texts.step_help);
+    set_allowed(this.#run, why_run, texts.run_help);
+    const why_reset = !info ? common_texts.no_world :
+      world.is_replay       ? common_texts.replay_cannot_change :
                               server.why_not("reset_world", world.shown);
     set_allowed(this.#reset, why_reset);
     this.#seed.disabled = why_reset !== "";
@@ -114,14 +107,10 @@ export class RunPanel implements Panel {
 
   #ask(): void {
     const text = this.#seed.value.trim(), wrong = text !== "" && !(/^\d{1,20}$/.test(text) && BigInt(text) <= seed_max);
-    set_text(
-      this.#seed_error,
-      wrong ? `seed: got "${text}", allowed whole numbers from 0 to ${with_separators(seed_max)}` : "");
+    set_text(this.#seed_error, wrong ? common_texts.wrong_seed(text, seed_max) : "");
     set_attribute(this.#seed, "aria-invalid", wrong ? "true" : null);
     if (!wrong) {
-      set_text(
-        this.#question,
-        `Restart ${this.#context.world().name} at generation 1 ${text ? `with seed ${text}` : "with the same seed"}?`);
+      set_text(this.#question, texts.ask_reset(this.#context.world().name, text));
       this.#confirm.hidden = false;
       this.#confirm.querySelector("button")!.focus();
     }

@@ -1,6 +1,7 @@
 // View panel: selects what the island shows, and how. The same switches in the same order as in evoview
 // (client/viewer/panels/view_panel.cpp).
 import type {Look} from "../core/messages";
+import {view_texts as texts} from "../texts/view";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {default_look} from "../render/look";
@@ -9,19 +10,17 @@ import type {Panel, PanelContext} from "../world/panel_context";
 type Which = Look["perception"];
 type Switch = "trails"|"flashes"|"density"|"minimap"|"interpolate";
 
-const which_names: ReadonlyArray<{value: Which; text: string}> = [
-  {value: "none", text: "none"},
-  {value: "selected", text: "at the mouse or selected"},
-  {value: "all", text: "all"},
-];
+type Names = {
+  readonly [value: string]: string
+};
 
-function names(...values: string[]): {value: string; text: string}[] {
-  return values.map((value) => ({value, text: value}));
+function options(names: Names): {value: string; text: string}[] {
+  return Object.entries(names).map(([value, text]) => ({value, text}));
 }
 
 export class ViewPanel implements Panel {
   readonly name = "view";
-  readonly title = "View";
+  readonly title = texts.title;
   readonly element: HTMLElement;
   readonly #skin = this.#select(
     (skin) => this.#set(default_look(skin as Look["skin"], this.#look.background, this.#look.interpolate)));
@@ -30,7 +29,7 @@ export class ViewPanel implements Panel {
   readonly #palette = this.#select((palette) => this.#set({palette: palette as Look["palette"]}));
   readonly #perception = this.#select((which) => this.#set({perception: which as Which}));
   readonly #forces = this.#select((which) => this.#set({forces: which as Which}));
-  readonly #background_label = h("label", {}, "background");
+  readonly #background_label = h("label", {});
   readonly #checks: {readonly[name in Switch]: HTMLInputElement} = {
     trails: this.#check("trails"),
     flashes: this.#check("flashes"),
@@ -40,53 +39,46 @@ export class ViewPanel implements Panel {
   };
   readonly #follow: HTMLInputElement =
     h("input", {type: "checkbox", onchange: () => this.#context.world().selection.set_follow(this.#follow.checked)});
-  readonly #follow_row = h("label", {class: "check"}, this.#follow, "keep the selected organism centred (L)");
-  readonly #follow_hint = h("p", {class: "hint"}, "Click an organism to select it.");
-  readonly #lineage_hint = h(
-    "p", {class: "hint"},
-    "Lineages are counted from the first generation. evoview counts them from a later one after one lineage has taken over.");
+  readonly #follow_row = h("label", {class: "check"}, this.#follow, texts.follow);
+  readonly #follow_hint = h("p", {class: "hint"}, texts.select_first);
+  readonly #lineage_hint = h("p", {class: "hint"}, texts.lineages);
 
   readonly #context: PanelContext;
 
   constructor(context: PanelContext) {
     this.#context = context;
-    const {trails, flashes, density, minimap, interpolate} = this.#checks;
-    const row = (input: HTMLElement, label: string) => h("label", {class: "check"}, input, label);
+    const row = (name: Switch) => h("label", {class: "check"}, this.#checks[name], texts.switches[name]);
     this.element =
       h("div", {class: "panel panel-view"},
-        h("div", {class: "view-fields"}, ...this.#field(this.#skin, "skin"),
-          ...this.#field(this.#background, "background", this.#background_label),
-          ...this.#field(this.#colour_by, "colour by (C)"), ...this.#field(this.#palette, "palette")),
-        this.#lineage_hint, h("hr", {}),
-        h("div", {class: "view-checks"}, row(trails, "trails of the last 3 simulated seconds (T)"),
-          row(flashes, "flashes of meals and deaths")),
-        h("hr", {}),
-        h("div", {class: "view-fields"}, ...this.#field(this.#perception, "perception radii (V)"),
-          ...this.#field(this.#forces, "forces (G)")),
-        h("hr", {}),
-        h("div", {class: "view-checks"}, row(density, "density map where organisms are too many"),
-          row(minimap, "minimap while zoomed in"), row(interpolate, "smooth movement between snapshots")),
-        h("hr", {}), this.#follow_row, this.#follow_hint);
+        h("div", {class: "view-fields"}, ...this.#field("skin", this.#skin, texts.skin),
+          ...this.#field("background", this.#background, texts.background, this.#background_label),
+          ...this.#field("colour", this.#colour_by, texts.colour_by),
+          ...this.#field("palette", this.#palette, texts.palette)),
+        this.#lineage_hint, h("hr", {}), h("div", {class: "view-checks"}, row("trails"), row("flashes")), h("hr", {}),
+        h("div", {class: "view-fields"}, ...this.#field("perception", this.#perception, texts.perception),
+          ...this.#field("forces", this.#forces, texts.forces)),
+        h("hr", {}), h("div", {class: "view-checks"}, row("density"), row("minimap"), row("interpolate")), h("hr", {}),
+        this.#follow_row, this.#follow_hint);
   }
 
   refresh(): void {
     const world = this.#context.world();
     const {look} = world;
-    set_options(this.#skin, names("vivid", "classic"), look.skin);
-    set_options(this.#background, names("dark", "light"), look.background);
+    set_options(this.#skin, options(texts.skins), look.skin);
+    set_options(this.#background, options(texts.backgrounds), look.background);
     this.#background.hidden = this.#background_label.hidden = look.skin === "classic"; // which is always grey
     set_options(
       this.#colour_by,
       [
-        {value: "", text: look.skin === "vivid" ? "nothing (shade: health)" : "nothing"},
-        {value: "health", text: "health"},
-        {value: "lineage", text: "lineage (common ancestor)"},
-        ...world.gene_names.map((gene) => ({value: gene, text: `gene ${gene}`})),
+        {value: "", text: look.skin === "vivid" ? texts.by_nothing_vivid : texts.by_nothing},
+        {value: "health", text: texts.by_health},
+        {value: "lineage", text: texts.by_lineage},
+        ...world.gene_names.map((gene) => ({value: gene, text: texts.by_gene(gene)})),
       ],
       look.colour_by);
-    set_options(this.#palette, names("violet", "viridis", "cividis"), look.palette);
-    set_options(this.#perception, [...which_names], look.perception);
-    set_options(this.#forces, [...which_names], look.forces);
+    set_options(this.#palette, options(texts.palettes), look.palette);
+    set_options(this.#perception, options(texts.of_which), look.perception);
+    set_options(this.#forces, options(texts.of_which), look.forces);
     for (const name of Object.keys(this.#checks) as Switch[]) {
       this.#checks[name].checked = look[name];
     }
@@ -115,8 +107,8 @@ export class ViewPanel implements Panel {
     return input;
   }
 
-  #field(control: HTMLElement, text: string, label = h("label", {})): [HTMLElement, HTMLElement] {
-    control.id = `view-${text.replace(/[^a-z]+/g, "-")}`;
+  #field(name: string, control: HTMLElement, text: string, label = h("label", {})): [HTMLElement, HTMLElement] {
+    control.id = `view-${name}`;
     label.htmlFor = control.id;
     set_text(label, text);
     return [control, label];

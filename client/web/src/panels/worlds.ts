@@ -1,11 +1,13 @@
-// WorldsPanel: the worlds of the server with their state, the islands of the shown world, and the commands that create, fork and
-// delete worlds.
+// WorldsPanel: the worlds of the server with their state, the islands of the shown world, and the commands that create,
+// fork and delete worlds.
+import {common_texts} from "../texts/common";
 import {tenths, with_separators} from "../texts/numbers";
 import {speed_text, state_word} from "../texts/texts";
+import {worlds_texts as texts} from "../texts/worlds";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 
-import type {Message} from "../core/messages";
+import type {Statistics} from "../core/protocol";
 import {name_problem, unused_name} from "../world/names";
 import type {Panel, PanelContext} from "../world/panel_context";
 
@@ -15,7 +17,7 @@ const poll_ms = 1000;
 
 export class WorldsPanel implements Panel {
   readonly name = "worlds";
-  readonly title = "Worlds";
+  readonly title = texts.title;
   readonly element: HTMLElement;
 
   #worlds = h("tbody", {});
@@ -30,11 +32,10 @@ export class WorldsPanel implements Panel {
   #question = h("p", {});
   #deleted = "";
   #fork_form: HTMLFormElement;
-  #fork_name =
-    h("input", {class: "field grow", "aria-label": "Name of the new world", maxlength: 64, spellcheck: "false"});
+  #fork_name = h("input", {class: "field grow", "aria-label": texts.fork_name, maxlength: 64, spellcheck: "false"});
   #fork_from = h("p", {});
   #fork_error = h("p", {class: "error", role: "alert"});
-  #statistics: Message|null = null;
+  #statistics: Statistics|null = null;
   #polled = 0;
   #pending = false;
 
@@ -43,17 +44,16 @@ export class WorldsPanel implements Panel {
   constructor(context: PanelContext) {
     this.#context = context;
     const {notify} = context;
-    this.#create = guarded_button("New world …", notify, () => this.#open_dialog());
-    this.#fork = guarded_button("Fork …", notify, () => this.#ask_fork());
-    this.#delete = guarded_button("Delete …", notify, () => this.#ask_delete());
+    this.#create = guarded_button(texts.create, notify, () => this.#open_dialog());
+    this.#fork = guarded_button(texts.fork, notify, () => this.#ask_fork());
+    this.#delete = guarded_button(texts.remove, notify, () => this.#ask_delete());
     this.#confirm =
-      h("div", {class: "confirm", hidden: true}, this.#question,
-        h("p", {class: "hint"}, "If the server stores runs, the run file stays in its folder."),
+      h("div", {class: "confirm", hidden: true}, this.#question, h("p", {class: "hint"}, texts.file_stays),
         h("div", {class: "row"},
           h("button", {type: "button", class: "button button-danger", onclick: () => void this.#do_delete()},
-            "Delete the world"),
+            texts.do_remove),
           h("button", {type: "button", class: "button", onclick: () => this.#close(this.#confirm, this.#delete)},
-            "Cancel")));
+            common_texts.cancel)));
     this.#fork_form =
       h("form", {
         class: "confirm",
@@ -64,24 +64,23 @@ export class WorldsPanel implements Panel {
         }
       },
         this.#fork_from,
-        h("div", {class: "row"}, this.#fork_name, h("button", {type: "submit", class: "button button-primary"}, "Fork"),
+        h("div", {class: "row"}, this.#fork_name,
+          h("button", {type: "submit", class: "button button-primary"}, texts.do_fork),
           h("button", {type: "button", class: "button", onclick: () => this.#close(this.#fork_form, this.#fork)},
-            "Cancel")),
+            common_texts.cancel)),
         this.#fork_error);
     this.#islands_table =
       h("table", {class: "table"},
         h("thead", {},
           h("tr", {},
-            ...["Island", "Alive", "Mean health", "Last best fitness"].map(
-              (text, i) => h("th", {scope: "col", class: i ? "number" : null}, text)))),
+            ...texts.island_headings.map((text, i) => h("th", {scope: "col", class: i ? "number" : null}, text)))),
         this.#islands);
     this.element =
       h("div", {class: "panel panel-worlds"},
         h("table", {class: "table"},
           h("thead", {},
             h("tr", {},
-              ...["World", "State", "Generation", "Tick", "Speed"].map(
-                (text, i) => h("th", {scope: "col", class: i > 1 ? "number" : null}, text)))),
+              ...texts.headings.map((text, i) => h("th", {scope: "col", class: i > 1 ? "number" : null}, text)))),
           this.#worlds),
         h("div", {class: "row"}, this.#create, this.#fork, this.#delete), this.#why, this.#confirm, this.#fork_form,
         this.#islands_title, this.#islands_table);
@@ -93,7 +92,7 @@ export class WorldsPanel implements Panel {
                                          name,
                                          chosen: name === world.name,
                                          act: () => this.#context.world().show(name),
-                                         cells: ["damaged", "", "", ""]
+                                         cells: [texts.damaged, "", "", ""]
                                        }));
     update_rows(
       this.#worlds,
@@ -105,11 +104,10 @@ export class WorldsPanel implements Panel {
             chosen: info.name === world.name,
             act: () => this.#context.world().show(info.name),
             cells: [
-              state_word(
-                live ? world.control.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
+              state_word(live ? world.control.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
               with_separators(live ? live.generation : info.generation ?? 0),
               with_separators(live ? live.tick : info.tick ?? 0),
-              speed_text(info.speed) + (info.slowed ? " (slower)" : "")
+              info.slowed ? texts.slower(speed_text(info.speed)) : speed_text(info.speed)
             ],
           };
         }),
@@ -117,34 +115,31 @@ export class WorldsPanel implements Panel {
       ],
       1);
     const why_create = server.why_not("create_world");
-    set_allowed(this.#create, why_create, "Creates a world, beside those that exist.");
-    set_allowed(
-      this.#fork, world.info ? server.why_not("fork_world") : "No world is open.",
-      "Creates a world that starts from the tick shown.");
+    set_allowed(this.#create, why_create, texts.create_help);
+    set_allowed(this.#fork, world.info ? server.why_not("fork_world") : common_texts.no_world, texts.fork_help);
     set_allowed(
       this.#delete,
-      !world.info && !server.damage_of(world.name) ? "No world is open." :
-        world.is_replay                            ? "This world is a replay; return to the live world first." :
+      !world.info && !server.damage_of(world.name) ? common_texts.no_world :
+        world.is_replay                            ? texts.return_first :
                                                      server.why_not("delete_world"));
     set_text(this.#why, why_create);
     if (why_create) {
       this.#confirm.hidden = this.#fork_form.hidden = true;
     }
-    const statistics = this.#statistics, count: number = statistics?.world?.island_count ?? 0;
+    const statistics = this.#statistics, count = statistics?.world?.island_count ?? 0;
     this.#islands_title.hidden = this.#islands_table.hidden = count === 0 || statistics?.world?.name !== world.shown;
     if (statistics && !this.#islands_table.hidden) {
-      set_text(
-        this.#islands_title, world.is_replay ? `Islands of the replay of ${world.name}` : `Islands of ${world.name}`);
-      const of = (all: Message[]|undefined, island: number): Message|undefined =>
+      set_text(this.#islands_title, world.is_replay ? texts.islands_of_replay(world.name) : texts.islands(world.name));
+      const of = <Row extends {island?: number}>(all: Row[]|undefined, island: number): Row|undefined =>
         all?.find((one) => (one.island ?? 0) === island);
       update_rows(this.#islands, Array.from({length: count}, (_, i) => {
         const live = of(statistics.live, i), last = of(statistics.last, i);
         return {
-          name: `island ${i}`,
+          name: texts.island(i),
           chosen: i === world.island,
           act: () => this.#context.world().choose_island(i),
           cells: [
-            live ? `${with_separators(live.alive_count ?? 0)} of ${with_separators(live.organism_count ?? 0)}` : "",
+            live ? texts.alive(live.alive_count ?? 0, live.organism_count ?? 0) : "",
             live ? tenths(live.health_mean ?? 0) : "", last ? tenths(last.fitness_best ?? 0) : ""
           ],
         };
@@ -189,7 +184,7 @@ export class WorldsPanel implements Panel {
 
   #ask_delete(): void {
     this.#deleted = this.#context.world().name;
-    set_text(this.#question, `Delete the world ${this.#deleted}? It ends for all clients.`);
+    set_text(this.#question, texts.ask_remove(this.#deleted));
     this.#fork_form.hidden = true;
     this.#confirm.hidden = false;
     this.#confirm.querySelector("button")!.focus();
@@ -203,13 +198,10 @@ export class WorldsPanel implements Panel {
   #ask_fork(): void {
     const world = this.#context.world(), why = this.#context.server.why_not("fork_world");
     if (why || !world.snapshot) {
-      this.#context.notify(why || "No world is open.");
+      this.#context.notify(why || common_texts.no_world);
       return;
     }
-    set_text(
-      this.#fork_from,
-      `A copy of ${world.shown} at generation ${with_separators(world.snapshot.generation)}, tick ${
-        with_separators(world.feed.tick)}. It waits until it is run.`);
+    set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.feed.tick));
     set_text(this.#fork_error, "");
     this.#fork_name.value = unused_name(world.name, this.#context.server.world_names);
     this.#confirm.hidden = true;

@@ -28,7 +28,6 @@ export const freezer_texts = {
   open_files_help: "Opens CSV files of chromosomes. You can also drop them on this panel.",
   no_selection: "No organism is selected: click one in the island.",
   none_alive: "No organism is alive.",
-  no_world: "No world is open.",
   kept: (name: string, count: number) => `Kept ${organisms(count)} as ${name}.`,
   busy: "Reading …",
 
@@ -44,8 +43,8 @@ export const freezer_texts = {
   from_file: (file: string) => `file ${file}`,
   usage: (count: number, bytes: number, bytes_max: number) =>
     `${with_separators(count)} kept, ${mebibytes(bytes)} of ${mebibytes(bytes_max)} MiB.`,
-  where: (address: string) => `Only this browser has them, and only for ${address}. Download them as files to use them ` +
-    "elsewhere, or before you clear the data of the browser.",
+  where: (address: string) => `Only this browser has them, and only for ${address}. Download them as files to ` +
+    "use them elsewhere, or before you clear the data of the browser.",
 
   // ---- the chosen entry ----
   cannot_place: "This server cannot place anything; a newer version of evod can.",
@@ -59,7 +58,8 @@ export const freezer_texts = {
   scattered: (name: string, count: number, world: string, island: number) =>
     `Placed ${counted(count, "copy", "copies")} of ${name} in ${world}, island ${island}.`,
   no_room: (placed: number, wanted: number) =>
-    `Placed ${with_separators(placed)} of ${counted(wanted, "copy", "copies")}: no free place was found for the next one.`,
+    `Placed ${with_separators(placed)} of ${counted(wanted, "copy", "copies")}: ` +
+    "no free place was found for the next one.",
   create: "New world …",
   create_help: "Creates a world whose first generation is this population.",
   create_copies_help: "Creates a world whose first organisms are copies of this one.",
@@ -71,7 +71,6 @@ export const freezer_texts = {
   remove: "Delete …",
   ask_remove: (name: string) => `Delete ${name}? You cannot undo this.`,
   do_remove: "Delete it",
-  cancel: "Cancel",
   island: "island",
   organism: "organism",
   organism_name: (entry: string, island: number, organism: number, islands: number) =>
@@ -103,8 +102,8 @@ export const freezer_texts = {
   of_file: (file: string, problem: string) => `${file}: ${problem}.`,
   file_too_large: (bytes: number, bytes_max: number) =>
     `got ${with_separators(bytes)} bytes, allowed at most ${with_separators(bytes_max)}`,
-  too_short: "The generations are too short to read a whole one. Pause the world first, or show an earlier generation " +
-    "in the time line.",
+  too_short: "The generations are too short to read a whole one. Pause the world first, or show an earlier " +
+    "generation in the time line.",
   incomplete: (world: string) => `The server's answer about the population of ${world} is incomplete.`,
   gone: (name: string) => `${name} is no longer kept: another tab may have deleted it.`,
   forbidden: (why: string) => `This browser does not let the page store anything${why ? `: ${why}` : ""}.`,
@@ -112,6 +111,6 @@ export const freezer_texts = {
   too_many: (most: number) =>
     `The freezer is full: it has ${with_separators(most)} entries, the most allowed. Delete some first.`,
   full: (bytes: number, free: number, most: number) =>
-    `The freezer is full: the genes need ${mebibytes(bytes)} MiB, and ${mebibytes(free)} of ${mebibytes(most)} MiB are ` +
-    "free. Download and delete some entries first.",
+    `The freezer is full: the genes need ${mebibytes(bytes)} MiB, and ${mebibytes(free)} of ${mebibytes(most)} ` +
+    "MiB are free. Download and delete some entries first.",
 };

@@ -20,10 +20,7 @@ export const new_world_texts = {
   text_help: "The text of the experiment. A parameter that it does not name has its default value.",
   open_file: "Open a file …",
   beside: "show it beside this world",
-  cancel: "Cancel",
   create: "Create",
-  wrong_seed: (seed: string, most: bigint) =>
-    `seed: got "${seed}", allowed whole numbers from 0 to ${with_separators(most)}`,
   unequal_islands: (first: number, other: number) => `first population: got islands of ${with_separators(first)} and ${
     with_separators(other)} organisms, allowed the same number on each island`,
 };

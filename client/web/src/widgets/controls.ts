@@ -7,6 +7,22 @@ export function set_allowed(button: HTMLElement, why_not: string, help = ""): vo
   set_attribute(button, "title", why_not || help || null);
 }
 
+/** Enables a control or takes it out of use. title: the help, or why it is out of use; absent: it stays as it is. */
+export function set_enabled(
+  control: HTMLButtonElement|HTMLInputElement|HTMLSelectElement, enabled: boolean, title?: string): void {
+  control.disabled = !enabled;
+  if (title !== undefined && control.title !== title) {
+    control.title = title;
+  }
+}
+
+/** Sets the value only if it differs, so that the cursor stays. */
+export function set_value(control: HTMLInputElement|HTMLSelectElement, value: string): void {
+  if (control.value !== value) {
+    control.value = value;
+  }
+}
+
 /** A button that calls `act`, or shows its reason by `notify` while set_allowed() has disabled it. */
 export function guarded_button(
   label: string, notify: (text: string) => void, act: () => void, classes = "button"): HTMLButtonElement {

@@ -1,4 +1,5 @@
-// names: the names of worlds and of what the user keeps, and whether organisms have the genes of a world. Pure functions.
+// names: the names of worlds and of what the user keeps, and whether organisms have the genes of a world.
+// Pure functions.
 import {name_texts} from "../texts/names";
 
 export const name_characters_max = 64;

@@ -1,0 +1,195 @@
+// ParameterExchange: the edits of the shown world, and the requests about them: dry runs while the user edits, changes,
+// undo and redo. Draws nothing; ParametersPanel shows it.
+import type {Event, ParameterSet, PlannedChange, SetParameters} from "../core/protocol";
+import {common_texts} from "../texts/common";
+import {parameters_texts as texts} from "../texts/parameters";
+import {ParameterEdits, when_text, type When} from "../world/parameter_edits";
+import type {PanelContext} from "../world/panel_context";
+import {Refusal} from "../world/server";
+
+const check_delay_ms = 400; // after the last edit, before a dry run
+
+/** What shows the exchange. */
+export interface ExchangeView {
+  /** The registry of another server is known: the list of parameters must be built again. */
+  described(): void;
+  /** Another world or run is shown: nothing that the user typed has a meaning any longer. */
+  forgotten(): void;
+  /** The state has changed, after an answer of the server. */
+  answered(): void;
+  /** The server has refused a change: edits.violation() states why. */
+  refused(): void;
+  /** Edits were made while a change was being sent. */
+  edited_since(): void;
+}
+
+export class ParameterExchange {
+  readonly edits = new ParameterEdits();
+  /** Why the values cannot be changed now, as a sentence; empty if they can. */
+  why_not = "";
+  world = ""; // the followed world and run
+
+  readonly #context: PanelContext;
+  readonly #view: ExchangeView;
+  #run_id = "";
+  #set: ParameterSet|null = null; // the one that was taken last
+  #transaction = 0; // answers to earlier transactions are ignored
+  #apply_again = false; // an edit was made while a transaction was pending
+  #check_timer = 0;
+
+  constructor(context: PanelContext, view: ExchangeView) {
+    this.#context = context;
+    this.#view = view;
+  }
+
+  /** Follows the shown world. Returns whether something has changed. */
+  follow(): boolean {
+    const {server} = this.#context, world = this.#context.world();
+    let changed = false;
+    if (server.parameters !== this.edits.registry && server.parameters.length > 0) {
+      this.edits.describe(server.parameters);
+      this.#view.described();
+      this.#forget();
+      changed = true;
+    }
+    const run_id = world.info?.run_id ?? "";
+    if (world.shown !== this.world || run_id !== this.#run_id) {
+      this.world = world.shown;
+      this.#run_id = run_id;
+      this.#forget();
+      changed = true;
+    }
+    if (world.parameters.set !== null && world.parameters.set !== this.#set && this.edits.registry.length > 0) {
+      this.#set = world.parameters.set;
+      this.edits.update_all(this.#set);
+      changed = true;
+    }
+    const why_not = world.is_replay ? common_texts.replay_cannot_change : server.why_not("set_parameters", world.shown);
+    changed ||= why_not !== this.why_not;
+    this.why_not = why_not;
+    return changed;
+  }
+
+  /** Returns whether the event changes what is shown. */
+  take_event(event: Event): boolean {
+    const {parameters_changed} = event;
+    if (event.world !== this.world || event.run_id !== this.#run_id || !parameters_changed || !this.edits.known) {
+      return false;
+    }
+    if (!this.edits.update_changed(parameters_changed)) {
+      void this.#read();
+    }
+    return true;
+  }
+
+  /** Asks the server a moment after the last call whether it would accept the edits.
+   *
+   *  chosen_when  a sentence if the user has not chosen a moment */
+  check_soon(chosen_when: () => When | string): void {
+    this.stop_checking();
+    if (this.edits.edit_count > 0) {
+      this.#check_timer = window.setTimeout(() => void this.#check(chosen_when()), check_delay_ms);
+    }
+  }
+
+  stop_checking(): void {
+    clearTimeout(this.#check_timer);
+  }
+
+  /** Sends the edits, or later if a change is being sent. */
+  apply(when: When): void {
+    void this.#send(this.edits.apply(this.world, when));
+  }
+
+  /** Remembers that the edits are to be applied after the change that is being sent. */
+  apply_afterwards(): void {
+    this.#apply_again = true;
+  }
+
+  undo(redo: boolean): void {
+    void this.#send(redo ? this.edits.redo(this.world) : this.edits.undo(this.world));
+  }
+
+  /** Cancels a planned change. */
+  async cancel({id}: PlannedChange): Promise<void> {
+    const {world} = this;
+    if (await this.#context.attempt(() => this.#context.server.request("cancel_change", {world, id}))) {
+      await this.#read();
+    }
+  }
+
+  #forget(): void {
+    this.edits.forget();
+    this.#set = null;
+    this.#transaction += 1;
+    this.#apply_again = false;
+    this.#view.forgotten();
+  }
+
+  /** Requests the complete set. */
+  async #read(): Promise<void> {
+    const {world} = this, transaction = this.#transaction;
+    try {
+      const set = await this.#context.server.request("get_parameters", {world});
+      if (world === this.world && transaction === this.#transaction) {
+        this.edits.update_all(set);
+        this.#view.answered();
+      }
+    } catch {
+      // The session ended: the next one reads the parameters.
+    }
+  }
+
+  async #check(when: When|string): Promise<void> {
+    const check = this.why_not === "" && typeof when !== "string" ? this.edits.check(this.world, when) : null;
+    if (check === null) {
+      return;
+    }
+    let refusal: Refusal|null = null;
+    try {
+      await this.#context.server.request("set_parameters", check.fields);
+    } catch (error) {
+      refusal = error as Refusal;
+    }
+    this.edits.checked(check.number, refusal);
+    this.#view.answered();
+  }
+
+  async #send(fields: SetParameters|null): Promise<void> {
+    this.stop_checking();
+    const transaction = this.#transaction;
+    this.#view.answered();
+    if (fields === null) {
+      return;
+    }
+    let stale = false, refused = false;
+    try {
+      const response = await this.#context.server.respond("set_parameters", fields);
+      if (transaction !== this.#transaction) {
+        return;
+      }
+      stale = this.edits.answered({set: response.parameters ?? null});
+      const count = fields.parameters?.length ?? 0;
+      this.#context.notify(
+        response.planned_change ? texts.planned(count, when_text(response.planned_change)) :
+                                  texts.applied(count, response.applied_tick ?? 0));
+    } catch (error) {
+      if (transaction !== this.#transaction) {
+        return;
+      }
+      stale = this.edits.answered(error instanceof Refusal && error.code !== "" ? {refusal: error} : {lost: true});
+      refused = true;
+    }
+    if (refused) {
+      this.#view.refused();
+    }
+    if (stale) {
+      void this.#read();
+    }
+    this.#view.answered();
+    if (this.#apply_again) {
+      this.#apply_again = false;
+      this.#view.edited_since();
+    }
+  }
+}

@@ -1,0 +1,11 @@
+// Texts about the panels themselves: the titles of those that are loaded later, and why one is not shown yet.
+export const panels_texts = {
+  organism: "Organism",
+  glass_box: "Glass box",
+  family: "Family tree",
+  plots: "Plots",
+  physics: "Physics",
+  freezer: "Freezer",
+  loading: "Loading …",
+  not_loaded: (why: string) => `The panel cannot be loaded: ${why}.`,
+};
