@@ -1,4 +1,5 @@
-// Declarations that TypeScript 4.8 lacks: OffscreenCanvas, and the functions of a worker that the page's library does not have.
+// Declarations that TypeScript 4.8 lacks: OffscreenCanvas, and the functions of a worker that the page's library does
+// not have.
 
 interface OffscreenCanvas extends EventTarget {
   width: number;

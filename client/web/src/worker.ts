@@ -1,8 +1,8 @@
 // worker: owns the socket, the protocol core, the decoder and the canvases, so that the page stays responsive.
 //
 // Flow control   A snapshot is acknowledged after the frame that contains it is drawn, and the server sends at most
-//                unacknowledged_max snapshots ahead. A hidden page draws nothing, so the server soon stops sending; after
-//                hidden_max_ms the worker ends its subscriptions to snapshots until the page is visible again.
+//                unacknowledged_max snapshots ahead. A hidden page draws nothing, so the server soon stops sending;
+//                after hidden_max_ms the worker ends its subscriptions to snapshots until the page is visible again.
 import {type CoreEvent, is_name_of_replay, type Subscription} from "./core/client_core";
 import {InvalidMessage} from "./core/errors";
 import {EventQueue} from "./core/event_queue";
@@ -58,7 +58,8 @@ function send_events(): void {
   }
 }
 
-// ---- what the core reports ---------------------------------------------------------------------------------------------
+// ---- what the core reports
+// ---------------------------------------------------------------------------------------------
 
 function take(events: CoreEvent[]): void {
   for (const event of events) {
@@ -101,7 +102,7 @@ function take(events: CoreEvent[]): void {
   }
 }
 
-/** Tells the page the end of one of its requests. */
+/** Posts the answer to one of the requests of the page. */
 function answer(id_of_core: number, message: (id: number) => FromWorker): void {
   const id = ids.get(id_of_core);
   ids.delete(id_of_core);
@@ -123,7 +124,8 @@ function take_snapshot(subscription: Subscription, snapshot: Snapshot): void {
   loop();
 }
 
-// ---- frames ------------------------------------------------------------------------------------------------------------
+// ---- frames
+// ------------------------------------------------------------------------------------------------------------
 
 function loop(): void {
   if (is_looping || !is_visible) {
@@ -138,7 +140,8 @@ function loop(): void {
       loop();
     }
   };
-  // A browser that is short of time gives no animation frames for seconds; the page then shows few images, but recent ones.
+  // A browser that is short of time gives no animation frames for seconds; the page then shows few images, but recent
+  // ones.
   const timer = setTimeout(frame, scope.requestAnimationFrame ? frame_max_ms : frame_ms);
   const request = scope.requestAnimationFrame?.(frame) ?? 0;
 }
@@ -178,7 +181,8 @@ function show(visible: boolean): void {
   loop();
 }
 
-// ---- messages of the page ----------------------------------------------------------------------------------------------
+// ---- messages of the page
+// ----------------------------------------------------------------------------------------------
 
 scope.onmessage = ({data: message}) => {
   switch (message.kind) {

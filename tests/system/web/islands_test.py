@@ -10,6 +10,7 @@ from browser import Keys  # noqa: E402
 from page_test import Case, c, w  # noqa: E402
 
 ISLANDS = 6
+TILES = "[...document.querySelectorAll('.island-tile')]"
 VIEWS = "evod.app.areas.map((area) => area.pane.view.camera)"
 
 
@@ -20,10 +21,9 @@ class Islands(Case):
         control.run_to(150)  # in the second generation
         browser.open(self.page(server))
         whole = browser.pixels()
-        browser.press("All islands")
+        browser.element("body").send_keys("i")  # the focus goes to the chosen island
         browser.wait("document.querySelectorAll('.island-tile').length === arguments[0]", "all tiles", ISLANDS)
-        browser.wait("[...document.querySelectorAll('.island-tile')].every((e) => e.ariaLabel.includes('generation 2'))",
-                     "all islands in generation 2")
+        browser.wait(f"{TILES}.every((tile) => tile.ariaLabel.includes('generation 2'))", "all islands in generation 2")
         self.assertEqual(browser.value("document.querySelectorAll('.pane-area canvas.pane-canvas').length"), 1)
         shown = browser.pixels()
         self.assertTrue((whole != shown).any())
@@ -32,7 +32,8 @@ class Islands(Case):
             x, y, width, height = browser.value(
                 """(({ left, top, width, height }) => [left, top, width, height])(
                     document.querySelectorAll(".island-tile")[arguments[0]].getBoundingClientRect())""", island)
-            place = shown[round(y - top) + 25:round(y - top + height) - 5, round(x - left) + 5:round(x - left + width) - 5]
+            x, y = x - left, y - top
+            place = shown[round(y) + 25:round(y + height) - 5, round(x) + 5:round(x + width) - 5]
             self.assertGreater(len({tuple(pixel) for row in place for pixel in row}), 20, island)
 
         keys = browser.driver.switch_to.active_element  # the tile of island 0
@@ -43,6 +44,10 @@ class Islands(Case):
         browser.wait("evod.app.world().snapshot?.island === 1", "island 1 alone")
         browser.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
         browser.wait("document.activeElement.ariaLabel?.startsWith('Island 1:')", "the tile of island 1")
+        browser.press("All islands")
+        browser.wait("document.querySelectorAll('.island-tile').length === 0", "only one island")
+        browser.press("All islands")
+        browser.wait(f"{TILES}.length > 0 && document.activeElement.ariaLabel === 'All islands'", "the button's focus")
         browser.click(browser.element(f".island-tile:nth-child({ISLANDS})"))
         browser.wait("evod.app.world().snapshot?.island === arguments[0]", "the last island", ISLANDS - 1)
 
@@ -51,8 +56,9 @@ class Islands(Case):
         control, browser = self.client(server), self.browser
         same = {"island_width_px": 720.0, "island_height_px": 450.0}
         for name, factor in (("same", 1), ("wide", 2)):
-            control.call(create_world=c.CreateWorld(name=name, seed=1, parameters=[
-                w.ParameterAssignment(name=key, value=w.ParameterValue(real=factor * size)) for key, size in same.items()]))
+            parameters = [w.ParameterAssignment(name=key, value=w.ParameterValue(real=factor * size))
+                          for key, size in same.items()]
+            control.call(create_world=c.CreateWorld(name=name, seed=1, parameters=parameters))
         browser.open(self.page(server))
         browser.run("evod.app.show_beside('same')")
         browser.wait("evod.app.other() !== null && evod.app.world().snapshot?.world === 'same'", "two worlds")

@@ -5,7 +5,6 @@ EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes; E
 class below is one subject, and one test of ctest, with a browser of its own. Waits are for conditions, as waiting.py
 describes; nothing here measures time or frames.
 """
-import csv
 import json
 import os
 import pathlib
@@ -749,79 +748,6 @@ class Keyboard(Case):
             browser.tap(*place[organism])
             browser.wait("evod.app.world().selection.id === arguments[0]", f"organism {organism} selected", organism)
             browser.wait_for_text(f"{organism}", "[data-panel=organism]")
-
-
-class Family(Case):
-    def setUp(self):
-        super().setUp()
-        self.served = self.start()
-        self.control = self.client(self.served)
-        self.control.run_to(900)
-        self.browser.open(self.page(self.served))
-        self.shown_tick(900)
-        self.browser.panel("Family tree")
-        self.choose("What to show", "whole generation")
-        self.browser.wait_for_text("organisms, ", ".family")
-
-    def choose(self, label, text):
-        find = f"[...document.querySelectorAll('.family select[aria-label=\"{label}\"] option')].find((o) => o.text === arguments[0])"
-        self.browser.wait(find, text, text)
-        self.browser.value(find, text).click()
-
-    def lineage(self):
-        """The parents of each organism, which is (generation, id)."""
-        part = self.control.call(export_run=c.ExportRun(world="default", table=c.RUN_TABLE_LINEAGE, format=c.TEXT_FORMAT_CSV))
-        text = part.export_part.text
-        while not part.export_part.last:
-            part = self.control.call(continue_export=c.ContinueExport(export_id=part.export_part.export_id))
-            text += part.export_part.text
-        rows = list(csv.DictReader(text.decode().splitlines()))
-        return {(int(row["generation"]), int(row["organism"])): {
-            (int(row["generation"]) - 1, int(row[parent])) for parent in ("parent_first", "parent_second") if row[parent]}
-            for row in rows}
-
-    def common(self, parents, organisms):
-        """The most recent common ancestors of organisms of one generation."""
-        ancestors = [{one} for one in organisms]
-        while ancestors[0]:
-            ancestors = [set().union(*(parents[one] for one in of)) for of in ancestors]
-            if common := set.intersection(*ancestors):
-                return common
-        return set()
-
-    def test_a_generation_and_its_common_ancestors(self):
-        browser, parents = self.browser, self.lineage()
-        last = max(generation for generation, _ in parents)
-        common = self.common(parents, [one for one in parents if one[0] == last])
-        text = browser.wait("document.querySelector('.family-sentence').textContent", "the sentence")
-        if common:
-            self.assertIn(f"of generation {min(common)[0]}, ", text)
-            for _, organism in sorted(common)[:2]:
-                self.assertRegex(text, rf"\b{organism}\b")
-        else:
-            self.assertIn("have no common ancestor since generation 1", text)
-        browser.click(browser.element(".family summary"))
-        browser.wait(f"document.querySelectorAll('.family tbody tr').length === {SMALL['population_size']}", "the table")
-        self.assertEqual(browser.text(".family details [role=status]"), "Rows 1 to 30 of 30")
-
-        drawing = browser.element(".family-drawing")
-        browser.run("arguments[0].focus()", drawing)
-        read = "Number(/Organism (\\d+) of generation/.exec(document.querySelector('.family-note').textContent)?.[1] ?? -1)"
-        one = browser.value(read)
-        drawing.send_keys("m", Keys.END)
-        other = browser.value(read)
-        drawing.send_keys("m")
-        browser.wait_for_text(f"A: organism {one} of generation {last}. B: organism {other} of generation {last}.", ".family-marks")
-        common = self.common(parents, [(last, one), (last, other)])
-        if common:
-            browser.wait_for_text(f"of generation {min(common)[0]}.", ".family-marks")
-
-        drawing.send_keys(Keys.ARROW_UP)
-        parent = browser.value(read)
-        self.assertIn((last - 1, parent), parents[last, other])
-        drawing.send_keys(Keys.ENTER)
-        browser.wait("evod.app.world().is_replay && evod.app.world().snapshot.generation === arguments[0]", "the past", last - 1)
-        browser.wait("evod.app.world().selection.id === arguments[0]", f"organism {parent} selected", parent)
 
 
 @unittest.skipUnless("EVOVIEW" in os.environ, "evoview is not built")

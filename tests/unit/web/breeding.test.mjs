@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const breeding = await bundle("breeding");
+const breeding = await bundle("breeding", "texts/breeding");
 const key = { world: "a", run_id: "r", island: 0, generation: 4 };
 
 /** A record with two organisms, their parameters and the given lists. */

@@ -1,5 +1,5 @@
 // Bets: the organisms that the user expects to be picked in a breeding, and the score of these bets. No DOM.
-import {three_digits, with_separators} from "../texts/numbers";
+import {bet_texts} from "../texts/breeding_theory";
 import type {Comparison} from "./comparison";
 
 export const bets_max = 5;
@@ -51,13 +51,6 @@ export function score_of(bets: Bets, comparison: Comparison, copies: readonly nu
  *
  *  complete  whether all picks were made; otherwise the text does not contain the law and the best possible bets */
 export function score_text(score: BetScore, complete: boolean): string {
-  const text =
-    `${with_separators(score.hits)} of ${with_separators(score.picks)} ${score.picks === 1 ? "pick" : "picks"} hit ` +
-    `your ${score.bets} ` +
-    `${score.bets === 1 ? "bet" : "bets"}. Random bets: ${three_digits(score.random)} expected.`;
-  return !complete ?
-    text :
-    `${text} Your bets: ${three_digits(score.law)} expected by the law of the selection. The best possible bets: ` +
-      `${with_separators(score.most)}.` +
-      (score.random > 0 ? ` Score: ${three_digits(score.hits / score.random)} times random betting.` : "");
+  return bet_texts.hits(score.hits, score.picks, score.bets, score.random) +
+    (complete ? bet_texts.result(score.law, score.most, score.random > 0 ? score.hits / score.random : null) : "");
 }

@@ -1,114 +1,79 @@
-// Captions: sentences that explain the moment that the glass box shows. No DOM.
-import type {Message} from "../core/messages";
-import {three_digits, with_separators} from "../texts/numbers";
+// Captions: the sentence that explains the moment that the glass box shows. No DOM.
+import type {Contender} from "../core/protocol";
+import {breeding_texts} from "../texts/breeding";
 import {type BreedingRecord, rank_of, slot_of} from "./record";
 import type {Moment} from "./stepper";
 
-export function counted(count: number, one: string, many: string): string {
-  return `${with_separators(count)} ${count === 1 ? one : many}`;
-}
-
-function capital(text: string): string {
-  return text.charAt(0).toUpperCase() + text.slice(1);
-}
-
-/** The value of a parameter with named choices, as text for users: "stochastic universal". */
-export function choice_text(choice: string): string {
-  return choice.replace(/_/g, " ");
-}
-
-/** "organism 17 (rank 3, fitness 182)". For users, the fittest has rank 1. */
 function organism_text(record: BreedingRecord, organism: number): string {
   const contender = record.contenders[organism];
-  if (!contender) {
-    return `organism ${organism}`;
-  }
-  let text = `organism ${organism} (rank ${with_separators(rank_of(contender) + 1)}, fitness ` +
-    `${three_digits(contender.fitness ?? 0)}`;
-  if (contender.own_fitness !== undefined) {
-    text += ` assigned by shuffling, own fitness ${three_digits(contender.own_fitness)}`;
-  }
-  if (contender.migrant) {
-    text += `, migrated from island ${contender.migrant.island ?? 0}`;
-  }
-  return text + ")";
+  return contender ? breeding_texts.contender(
+                       organism, rank_of(contender), contender.fitness ?? 0, contender.own_fitness ?? null,
+                       contender.migrant ? contender.migrant.island ?? 0 : null) :
+                     breeding_texts.unknown_contender(organism);
 }
 
 function picking_caption(record: BreedingRecord, index: number): string {
-  const text = `Pick ${with_separators(index + 1)} of ${with_separators(record.head?.pick_count ?? 0)}. `;
-  const pick = record.picks[index];
+  const text = breeding_texts.pick(index, record.head?.pick_count ?? 0), pick = record.picks[index];
   if (!pick) {
-    return text + "Loading …";
+    return text + breeding_texts.pick_loading;
   }
   const winner = organism_text(record, pick.organism ?? 0);
   if (pick.turns !== undefined) {
     const contender = record.contenders[pick.organism ?? 0];
-    return `${text}The pointer stopped in the slot of ${winner}` +
-      (contender ? `, ${three_digits(100 * slot_of(contender))} % of the wheel.` : ".");
+    return text + breeding_texts.by_pointer(winner, contender ? slot_of(contender) : null);
   }
   if (pick.tournament !== undefined) {
-    const contestants: number[] = pick.contestants ?? [];
-    const tournament = `${text}Tournament ${with_separators(pick.tournament + 1)}`;
-    // Without contestants there were too many of them, or the server drew the winner directly.
-    return contestants.length === 0 ?
-      `${tournament} is too large to show. ${capital(winner)} won.` :
-      `${tournament} of ${counted(contestants.length, "contestant", "contestants")}: ${winner} won.`;
+    const contestants = pick.contestants?.length ?? 0;
+    return text +
+      (contestants === 0 ? breeding_texts.by_unseen_tournament(pick.tournament, winner) :
+                           breeding_texts.by_tournament(pick.tournament, contestants, winner));
   }
-  return `${text}${capital(winner)}.`;
+  return text + breeding_texts.by_chance(winner);
 }
 
 function breeding_caption(record: BreedingRecord, id: number): string {
-  const text = `Organism ${with_separators(id)} of the next generation: `;
-  const descendant = record.descendants[id];
+  const text = breeding_texts.descendant(id), descendant = record.descendants[id];
   if (!descendant) {
-    return text + "loading …";
+    return text + breeding_texts.descendant_loading;
   }
-  const first = descendant.first_parent ?? 0, second = descendant.second_parent ?? 0;
-  const mutations: Message[] = descendant.mutations ?? [];
-  if (descendant.kind === "DESCENDANT_KIND_ELITE") {
-    return `${text}of the elite, ${organism_text(record, first)}, kept unchanged.`;
+  const first = descendant.first_parent ?? 0, mutations = descendant.mutations ?? [];
+  switch (descendant.kind) {
+    case "DESCENDANT_KIND_ELITE":
+      return text + breeding_texts.elite(organism_text(record, first));
+    case "DESCENDANT_KIND_SURVIVOR":
+      return text +
+        breeding_texts.survivor(
+          organism_text(record, first), mutations.length > 0 || descendant.order_mutation !== undefined);
+    default:
+      return text +
+        breeding_texts.child(
+          first, descendant.second_parent ?? 0, descendant.second_share ?? 0, descendant.crossed === true) +
+        (descendant.order_mutation ? breeding_texts.reordered(descendant.order_mutation.method ?? "") : "") +
+        breeding_texts.mutations(mutations.filter((mutation) => mutation.kind !== "MUTATION_KIND_CLAMP").length);
   }
-  if (descendant.kind === "DESCENDANT_KIND_SURVIVOR") {
-    const end = mutations.length === 0 && !descendant.order_mutation ? "." : ", mutated.";
-    return `${text}a survivor, ${organism_text(record, first)}${end}`;
-  }
-  const share = descendant.second_share ?? 0;
-  const mutated = mutations.filter((mutation) => mutation.kind !== "MUTATION_KIND_CLAMP").length;
-  return `${text}a child of organisms ${first} and ${second}` + (first === second ? ", the same organism twice" : "") +
-    (share > 0 ? `, blended with weights ${(1 - share).toFixed(3)} and ${share.toFixed(3)}` :
-       descendant.crossed ? "" :
-                            ", not crossed") +
-    (descendant.order_mutation ? `, ${choice_text(descendant.order_mutation.method ?? "")} reordered genes` : "") +
-    (mutated === 0 ? ", no mutation." : `, ${counted(mutated, "mutation", "mutations")}.`);
 }
 
 /** The law of the selection method: "Roulette wheel: … An organism with twice the weight is picked twice as often on
  *  average." */
 export function selection_law_text(record: BreedingRecord): string {
-  const method = record.choice("selection"), scaling = record.choice("fitness_scaling");
-  if (method === "tournament") {
-    const size = record.number("tournament_size") ?? 0, winners = record.number("tournament_winners") ?? 1;
-    return `Tournament: ${three_digits(size)} organisms are drawn at random, and the fittest ` +
-      (winners > 1 ? `${three_digits(winners)} of them are picked.` : "of them is picked.") +
-      " Larger tournaments favour the fittest more.";
-  }
-  if (method === "random") {
-    return "Random: every organism has the same chance in every pick. Fitness does not matter.";
-  }
-  if (method === "truncation") {
-    return "Truncation: the best organisms are picked in order of rank, then again from the first, until all picks " +
-      "are made. There is no luck.";
-  }
-  const law = method === "stochastic_universal" ?
-    "Universal sampling: one spin sets all pointers at equal distances, so each organism is picked its expected " +
-      "number of times, rounded up or down." :
-    "Roulette wheel: the wheel is spun for each pick. An organism with twice the weight is picked twice as often " +
-      "on average.";
+  const scaling = record.choice("fitness_scaling");
   const any_negative = record.contenders.some((contender) => (contender.fitness ?? 0) < 0);
-  return law +
-    (scaling === "none" && !any_negative             ? " The weight is the fitness." :
-       scaling === "none" || scaling === "windowing" ? " The weight is the fitness minus the lowest fitness." :
-                                                       " The weight depends on the rank alone.");
+  const weight = scaling === "none" && !any_negative ? breeding_texts.weight_is_fitness :
+    scaling === "none" || scaling === "windowing"    ? breeding_texts.weight_is_difference :
+                                                       breeding_texts.weight_is_of_rank;
+  switch (record.choice("selection")) {
+    case "tournament":
+      return breeding_texts.law_tournament(
+        record.number("tournament_size") ?? 0, record.number("tournament_winners") ?? 1);
+    case "random":
+      return breeding_texts.law_random;
+    case "truncation":
+      return breeding_texts.law_truncation;
+    case "stochastic_universal":
+      return breeding_texts.law_stochastic_universal + weight;
+    default:
+      return breeding_texts.law_roulette + weight;
+  }
 }
 
 /** "Roulette with windowing · hybrid · 50 organisms, 25 picks: 25 survivors and 25 children" */
@@ -118,17 +83,19 @@ export function breeding_summary(record: BreedingRecord): string {
     return "";
   }
   const method = record.choice("selection"), scaling = record.choice("fitness_scaling");
-  const wheel = method === "roulette" || method === "stochastic_universal";
-  return capital(choice_text(method)) +
-    (method === "tournament" ? ` of ${record.number("tournament_size") ?? 0}` :
-       wheel && scaling !== "none" ? ` with ${choice_text(scaling)}` :
-                                     "") +
-    ` · ${choice_text(record.choice("population_model"))} · ` +
-    `${counted(head.contender_count ?? 0, "organism", "organisms")}, ` +
-    `${counted(head.pick_count ?? 0, "pick", "picks")}: ${counted(record.survivor_count, "survivor", "survivors")}` +
-    (record.elite_count > 0 ? ` (${with_separators(record.elite_count)} of the elite)` : "") +
-    ` and ${counted((head.descendant_count ?? 0) - record.survivor_count, "child", "children")}` +
-    (record.number("shuffle_fitness") === 1 ? " · fitness shuffled among organisms" : "");
+  const has_wheel = method === "roulette" || method === "stochastic_universal";
+  return breeding_texts.summary({
+    method,
+    tournament_size: method === "tournament" ? record.number("tournament_size") ?? 0 : null,
+    scaling: has_wheel && scaling !== "none" ? scaling : "",
+    population_model: record.choice("population_model"),
+    organisms: head.contender_count ?? 0,
+    picks: head.pick_count ?? 0,
+    survivors: record.survivor_count,
+    elite: record.elite_count,
+    children: (head.descendant_count ?? 0) - record.survivor_count,
+    shuffled: record.number("shuffle_fitness") === 1,
+  });
 }
 
 export function caption(record: BreedingRecord, moment: Moment): string {
@@ -140,23 +107,21 @@ export function caption(record: BreedingRecord, moment: Moment): string {
     case "breeding":
       return breeding_caption(record, moment.index);
     case "done":
-      return `The next generation: ${counted(record.survivor_count, "survivor", "survivors")} and ` +
-        `${counted((record.head?.descendant_count ?? 0) - record.survivor_count, "child", "children")}. A dot marks ` +
-        "each organism that was picked.";
+      return breeding_texts.done(record.survivor_count, (record.head?.descendant_count ?? 0) - record.survivor_count);
   }
 }
 
 /** What is known about an organism at the time of selection.
  *
  *  complete  all picks are shown; otherwise the number of its picks is left out */
-export function contender_text(organism: number, contender: Message, complete: boolean): string {
-  const slot = slot_of(contender);
-  return `organism ${organism}: rank ${with_separators(rank_of(contender) + 1)}, fitness ` +
-    `${three_digits(contender.fitness ?? 0)}` +
-    (slot > 0 ? `, weight ${three_digits(contender.weight ?? 0)}: ${three_digits(100 * slot)} % of the wheel` : "") +
-    `; expected picks ${three_digits(contender.expected_copies ?? 0)}` +
-    (complete ? `, observed ${with_separators(contender.copies ?? 0)}` : "") +
-    (contender.migrant ?
-       `; came from island ${contender.migrant.island ?? 0}, organism ${contender.migrant.organism ?? 0} there` :
-       "");
+export function contender_text(organism: number, contender: Contender, complete: boolean): string {
+  return breeding_texts.contender_note(organism, {
+    rank: rank_of(contender),
+    fitness: contender.fitness ?? 0,
+    weight: contender.weight ?? 0,
+    slot: slot_of(contender),
+    expected: contender.expected_copies ?? 0,
+    observed: complete ? contender.copies ?? 0 : null,
+    migrant: contender.migrant,
+  });
 }

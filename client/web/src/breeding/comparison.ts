@@ -1,6 +1,5 @@
-// Comparison: for each rank, the observed number of copies beside the number that the law of the selection method
-// expects.
-// No DOM.
+// Comparison: for each rank, the observed number of copies next to the number that the law of the selection method
+// expects. No DOM.
 import {type BreedingRecord, rank_of} from "./record";
 
 /** Each list is indexed by rank and has one entry per contender. */
@@ -21,14 +20,15 @@ export function compare(record: BreedingRecord): Comparison|null {
   if (count === 0 || record.contenders.length !== count) {
     return null;
   }
-  const by_rank: number[] = [];
+  const by_rank = new Array<number>(count).fill(-1);
   record.contenders.forEach((contender, organism) => {
     by_rank[rank_of(contender)] = organism;
   });
-  if (by_rank.length !== count || by_rank.includes(undefined as unknown as number)) {
+  if (by_rank.length !== count || by_rank.includes(-1)) {
     return null;
   }
-  const column = (field: string): number[] => by_rank.map((organism) => record.contenders[organism]![field] ?? 0);
+  const column = (field: "fitness"|"copies"|"expected_copies"|"expected_copies_error"|"unpicked_chance"): number[] =>
+    by_rank.map((organism) => record.contenders[organism]![field] ?? 0);
   const copies = column("copies"), expected = column("expected_copies"),
         standard_error = column("expected_copies_error");
   const deviations = copies.map((observed, rank) => deviation(observed, expected[rank]!, standard_error[rank]!));
@@ -122,8 +122,7 @@ export function pick_columns(record: BreedingRecord, index: number, columns: num
     const first = Math.floor(i * count / columns), last = Math.floor((i + 1) * count / columns) - 1;
     const ranks = record.picks.slice(first, Math.min(last, index) + 1)
                     .map((pick) => record.contenders[pick.organism ?? 0])
-                    .filter((contender) => contender !== undefined)
-                    .map((contender) => rank_of(contender!));
+                    .flatMap((contender) => (contender ? [rank_of(contender)] : []));
     made.push({first, last, rank: ranks.length > 0 ? ranks.reduce((sum, rank) => sum + rank, 0) / ranks.length : null});
   }
   return made;

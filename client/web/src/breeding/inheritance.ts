@@ -1,6 +1,7 @@
 // Inheritance: how crossover, order mutation, mutations and bounds turned the genes of the parents into those of a
 // descendant. No DOM.
-import type {Message} from "../core/messages";
+import type {Descendant, MutationKind} from "../core/protocol";
+import {breeding_texts} from "../texts/breeding";
 
 export interface GeneOrigin {
   value: number;
@@ -11,7 +12,7 @@ export interface GeneOrigin {
 
 /** A change of one gene, by a mutation or by clamping to its bounds. */
 export interface GeneChange {
-  kind: string; // an enumerator of MutationKind
+  kind: MutationKind;
   gene: number;
   before: number;
   after: number;
@@ -31,17 +32,16 @@ export interface Inheritance {
 }
 
 /** Whether gene g comes from the second parent. */
-export function is_from_second(descendant: Message, gene: number): boolean {
-  const word: number =
-    gene < 32 ? descendant.from_second ?? 0 : descendant.more_from_second?.[Math.floor(gene / 32) - 1] ?? 0;
+export function is_from_second(descendant: Descendant, gene: number): boolean {
+  const word = gene < 32 ? descendant.from_second ?? 0 : descendant.more_from_second?.[Math.floor(gene / 32) - 1] ?? 0;
   return ((word >>> (gene % 32)) & 1) === 1;
 }
 
 /** Returns null if the lists of the Descendant contradict each other. */
-export function inheritance_of(descendant: Message): Inheritance|null {
-  const first: number[] = descendant.first_genes ?? [], second: number[] = descendant.second_genes ?? [];
+export function inheritance_of(descendant: Descendant): Inheritance|null {
+  const first = descendant.first_genes ?? [], second = descendant.second_genes ?? [];
   const count = first.length;
-  const order: number[]|undefined = descendant.order_mutation?.order;
+  const order = descendant.order_mutation?.order;
   const alone = second.length === 0 || descendant.kind !== "DESCENDANT_KIND_CHILD";
   if (
     count === 0 || (!alone && second.length !== count) ||
@@ -61,7 +61,7 @@ export function inheritance_of(descendant: Message): Inheritance|null {
     changed: first.map(() => false),
     genes: []
   };
-  const share: number = alone ? 0 : descendant.second_share ?? 0;
+  const share = alone ? 0 : descendant.second_share ?? 0;
   for (let gene = 0; gene < count; ++gene) {
     if (share > 0) {
       result.crossed.push({
@@ -93,69 +93,47 @@ export function inheritance_of(descendant: Message): Inheritance|null {
     }
   }
   result.genes = result.arranged.map((origin) => origin.value);
-  for (const mutation of (descendant.mutations ?? []) as Message[]) {
-    const gene: number = mutation.gene ?? 0;
+  for (const mutation of descendant.mutations ?? []) {
+    const gene = mutation.gene ?? 0;
     if (gene >= count) {
       return null;
     }
-    result.changes.push({kind: mutation.kind ?? "", gene, before: mutation.before ?? 0, after: mutation.after ?? 0});
+    result.changes.push({
+      kind: mutation.kind ?? "MUTATION_KIND_UNSPECIFIED",
+      gene,
+      before: mutation.before ?? 0,
+      after: mutation.after ?? 0
+    });
     result.genes[gene] = mutation.after ?? 0;
     result.changed[gene] = true;
   }
   return result;
 }
 
-/** "creep", "reset", "scale", "bit flip", "clamped" */
-export function mutation_text(kind: string): string {
-  switch (kind) {
-    case "MUTATION_KIND_CREEP":
-      return "creep";
-    case "MUTATION_KIND_RESET":
-      return "reset";
-    case "MUTATION_KIND_SCALE":
-      return "scale";
-    case "MUTATION_KIND_BIT_FLIP":
-      return "bit flip";
-    case "MUTATION_KIND_CLAMP":
-      return "clamped";
-    default:
-      return "mutation";
-  }
-}
-
-/** Four significant digits: "119.6", "0.4231", "−0.07". */
-export function gene_text(value: number): string {
-  return String(Number(value.toPrecision(4))).replace("-", "−");
-}
-
-/** "+7.31", "−0.4" */
-export function delta_text(delta: number): string {
-  return (delta < 0 ? "−" : "+") + gene_text(Math.abs(delta));
+export function mutation_text(kind: MutationKind): string {
+  return breeding_texts.mutation[kind];
 }
 
 /** Where a gene comes from: "hidden3<bias: 0.42 of parent 12, creep to 0.5" */
-export function origin_text(inheritance: Inheritance, gene: number, name: string, descendant: Message): string {
+export function origin_text(inheritance: Inheritance, gene: number, name: string, descendant: Descendant): string {
   const origin = inheritance.arranged[gene]!;
   const parent = (origin.from_second ? descendant.second_parent : descendant.first_parent) ?? 0;
-  const changes = inheritance.changes.filter((change) => change.gene === gene)
-                    .map((change) => `, ${mutation_text(change.kind)} to ${gene_text(change.after)}`);
-  return `${name}: ${gene_text(origin.value)}${origin.blended ? ", a mean of both parents" : ` of parent ${parent}`}` +
-    (origin.gene !== gene ? `, moved from gene ${origin.gene + 1}` : "") + changes.join("");
+  return breeding_texts.gene_origin(
+    name, origin.value, origin.blended ? null : parent, origin.gene === gene ? null : origin.gene,
+    inheritance.changes.filter((change) => change.gene === gene)
+      .map((change) => ({how: mutation_text(change.kind), after: change.after})));
 }
 
 /** "66 other genes: 35 of parent 12, 31 of parent 45, 4 mutated" */
-export function other_genes_text(inheritance: Inheritance, first_gene: number, descendant: Message): string {
+export function other_genes_text(inheritance: Inheritance, first_gene: number, descendant: Descendant): string {
   const others = inheritance.arranged.slice(first_gene);
-  const from_second = others.filter((origin) => origin.from_second).length;
-  const mutated = inheritance.changed.slice(first_gene).filter((changed) => changed).length;
-  const one = descendant.first_parent ?? 0, two = descendant.second_parent ?? 0;
-  const parts = [
-    others.some((origin) => origin.blended) ? `means of parents ${one} and ${two}` :
-                                              `${others.length - from_second} of parent ${one}`,
-    from_second > 0 ? `${from_second} of parent ${two}` : "",
-    mutated > 0 ? `${mutated} mutated` : "",
-  ];
-  return `${others.length} other genes: ${parts.filter((part) => part !== "").join(", ")}`;
+  return breeding_texts.other_genes(others.length, {
+    first: descendant.first_parent ?? 0,
+    second: descendant.second_parent ?? 0,
+    blended: others.some((origin) => origin.blended),
+    from_second: others.filter((origin) => origin.from_second).length,
+    mutated: inheritance.changed.slice(first_gene).filter((changed) => changed).length,
+  });
 }
 
 /** Neighbouring genes of a long chromosome that are drawn side by side: the weights of one neuron, or a few genes that

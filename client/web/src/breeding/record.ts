@@ -1,5 +1,5 @@
 // BreedingRecord: how one generation was bred, merged from the pages that the server has sent so far. No DOM.
-import type {Message} from "../core/messages";
+import type {Breeding, Contender, Descendant, GetBreeding, ParameterValue, Pick} from "../core/protocol";
 import type {Moment} from "./stepper";
 
 export const rows_kept_max = 20_000; // of each list
@@ -18,11 +18,11 @@ export function same_key(a: BreedingKey, b: BreedingKey): boolean {
 
 export class BreedingRecord {
   /** Breeding without its lists; null before the first page. */
-  head: Message|null = null;
+  head: Omit<Breeding, "contenders"|"picks"|"descendants">|null = null;
   /** The rows received so far, from row 0. */
-  readonly contenders: Message[] = [];
-  readonly picks: Message[] = [];
-  readonly descendants: Message[] = [];
+  readonly contenders: Contender[] = [];
+  readonly picks: Pick[] = [];
+  readonly descendants: Descendant[] = [];
   #no_new_row = false; // the last page contained no new row
 
   constructor(readonly key: BreedingKey) {}
@@ -50,8 +50,8 @@ export class BreedingRecord {
 
   /** Returns the fields of the next GetBreeding that is needed to show `moment`. Returns null if no data is missing, or
    *  if the last answer contained no new row. */
-  wanted(moment: Moment): Message|null {
-    const fields: Message = {world: this.key.world, island: this.key.island, generation: this.key.generation};
+  wanted(moment: Moment): GetBreeding|null {
+    const fields: GetBreeding = {world: this.key.world, island: this.key.island, generation: this.key.generation};
     if (!this.head) {
       return fields;
     }
@@ -67,8 +67,8 @@ export class BreedingRecord {
       any = true;
       return have;
     };
-    const {contender_count, pick_count = 0, descendant_count = 0} = this.head;
-    fields.first_contender = first_of(this.contenders.length, contender_count ?? 0, contender_count ?? 0);
+    const {contender_count = 0, pick_count = 0, descendant_count = 0} = this.head;
+    fields.first_contender = first_of(this.contenders.length, contender_count, contender_count);
     fields.first_pick =
       first_of(this.picks.length, moment.stage === "picking" ? moment.index + rows_ahead : 0, pick_count);
     fields.first_descendant =
@@ -77,15 +77,15 @@ export class BreedingRecord {
   }
 
   /** Adds the answer to the request from wanted(). Returns whether it is about this generation and island. */
-  add(page: Message): boolean {
-    if (Number(page.generation ?? 0) !== this.key.generation || (page.island ?? 0) !== this.key.island) {
+  add(page: Breeding): boolean {
+    if ((page.generation ?? 0) !== this.key.generation || (page.island ?? 0) !== this.key.island) {
       return false;
     }
     if (!this.head) {
       const {contenders: _contenders, picks: _picks, descendants: _descendants, ...head} = page;
       this.head = head;
     }
-    const append = (have: Message[], rows: Message[]|undefined, count: number): boolean => {
+    const append = <Row>(have: Row[], rows: Row[]|undefined, count: number): boolean => {
       const added = (rows ?? []).slice(0, Math.max(0, Math.min(count, rows_kept_max) - have.length));
       have.push(...added);
       return added.length > 0;
@@ -110,18 +110,17 @@ export class BreedingRecord {
     return !value ? null : value.real ?? value.count ?? (value.flag === undefined ? null : value.flag ? 1 : 0);
   }
 
-  #parameter(name: string): Message|null {
-    const found = (this.head?.parameters ?? []).find((parameter: Message) => parameter.name === name);
-    return found?.value ?? null;
+  #parameter(name: string): ParameterValue|null {
+    return this.head?.parameters?.find((parameter) => parameter.name === name)?.value ?? null;
   }
 }
 
 /** Organism ids, ranks and numbers that are 0 are absent in messages. */
-export function rank_of(contender: Message): number {
+export function rank_of(contender: Contender): number {
   return contender.rank ?? 0;
 }
 
 /** The share of the wheel that the organism's slot has, 0 to 1. */
-export function slot_of(contender: Message): number {
+export function slot_of(contender: Contender): number {
   return (contender.slot_end ?? 0) - (contender.slot_begin ?? 0);
 }

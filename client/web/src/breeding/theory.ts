@@ -1,12 +1,12 @@
-// Theory: the numbers that the theory of selection predicts for one breeding, beside the observed numbers. They are
+// Theory: the numbers that the theory of selection predicts for one breeding, next to the observed numbers. They are
 // derived from the expected copies, which the server computes from the law of the selection method. Ranks count from 0,
 // the fittest. No DOM.
 //
 // Source  Blickle & Thiele 1996, "A comparison of selection schemes used in evolutionary algorithms", Evol. Comput.
-// 4(4); Goldberg
-//         & Deb 1991, "A comparative analysis of selection schemes used in genetic algorithms"; Motoki 2002,
-//         "Calculating the
-//         expected loss of diversity of selection schemes", Evol. Comput. 10(4).
+//         4(4)
+//         Goldberg & Deb 1991, "A comparative analysis of selection schemes used in genetic algorithms"
+//         Motoki 2002, "Calculating the expected loss of diversity of selection schemes", Evol. Comput. 10(4)
+import {theory_texts} from "../texts/breeding_theory";
 import {type Comparison, deviation} from "./comparison";
 import type {BreedingRecord} from "./record";
 
@@ -239,11 +239,10 @@ function agreement(selection: Selection, comparison: Comparison): Prediction {
     square += (comparison.copies[rank]! - expected) ** 2 / expected;
   });
   return {
-    name: "Agreement of all copies",
+    name: theory_texts.agreement,
     unit: "",
-    source: "Pearson 1900; Haldane 1937",
-    sentence: "Squared differences between observed and expected copies, each divided by the expected copies " +
-      "(chi-square per organism): about 1 if the law holds.",
+    source: theory_texts.sources.pearson_haldane,
+    sentence: theory_texts.agreement_sentence,
     expected: (ranks - 1) / ranks,
     observed: square / ranks,
     standard_error: Math.sqrt(Math.max(2 * (ranks - 1) + (inverse - ranks * ranks - 2 * ranks + 2) / picks, 0)) / ranks,
@@ -256,78 +255,63 @@ export function predictions(selection: Selection, comparison: Comparison): Predi
   if (selection.picks === 0) {
     return [];
   }
-  const population = comparison.organisms.length;
+  const population = comparison.organisms.length, {sources} = theory_texts;
   const takeover = takeover_generations(selection, comparison.expected, comparison.fitness);
   const intensity = (name: string, sentence: string, of: readonly number[]): Prediction => ({
     name,
     sentence,
-    unit: "deviations",
-    source: "Blickle & Thiele 1996",
+    unit: theory_texts.unit_deviations,
+    source: sources.blickle_thiele,
     expected: weighted_mean(comparison.expected, of),
     observed: weighted_mean(comparison.copies, of),
     standard_error: error_of_intensity(selection, comparison, of),
   });
   const all: Prediction[] = [
     {
-      name: "Copies of the fittest",
-      sentence: "How often the organism with the best fitness is picked.",
+      name: theory_texts.fittest,
+      sentence: theory_texts.fittest_sentence,
       unit: "",
-      source: selection.method === "stochastic_universal" ? "Baker 1987" :
-        selection.method === "tournament"                 ? "Goldberg & Deb 1991" :
-                                                            "Blickle & Thiele 1996",
+      source: selection.method === "stochastic_universal" ? sources.baker :
+        selection.method === "tournament"                 ? sources.goldberg_deb :
+                                                            sources.blickle_thiele,
       expected: comparison.expected[0]!,
       observed: comparison.copies[0]!,
       standard_error: comparison.standard_error[0]!,
     },
-    intensity(
-      "Selection intensity",
-      "By how many standard deviations the mean fitness of the picked organisms exceeds the mean fitness of all " +
-        "organisms.",
-      standard_scores(comparison.fitness)),
+    intensity(theory_texts.intensity, theory_texts.intensity_sentence, standard_scores(comparison.fitness)),
     ...(
       selection.pressure === "rank" ?
-        [intensity(
-          "Intensity, normal fitness",
-          "The selection intensity if the fitness had a normal distribution: it would depend only on the ranks.",
-          normal_scores(population))] :
+        [intensity(theory_texts.normal_intensity, theory_texts.normal_intensity_sentence, normal_scores(population))] :
         []),
     {
-      name: "Share not selected",
+      name: theory_texts.unpicked,
       unit: "",
-      source: "Motoki 2002",
-      sentence: "The share of organisms that are never picked; genes that only these organisms had are lost.",
+      source: sources.motoki,
+      sentence: theory_texts.unpicked_sentence,
       expected: sum(comparison.unpicked_chance) / population,
       observed: comparison.copies.filter((copies) => copies === 0).length / population,
       standard_error: error_of_unpicked(selection, comparison),
     },
     {
-      name: "Loss of diversity",
+      name: theory_texts.diversity,
       unit: "",
-      source: "Blickle & Thiele 1996",
-      sentence: "The share of the population that copies of fitter organisms replace if every organism has its " +
-        "expected number of copies: the least possible loss.",
+      source: sources.blickle_thiele,
+      sentence: theory_texts.diversity_sentence,
       expected: loss_of_diversity(comparison.expected),
       observed: null,
       standard_error: null,
     },
     {
-      name: "Takeover time",
-      unit: "generations",
-      source: "Goldberg & Deb 1991",
+      name: theory_texts.takeover,
+      unit: theory_texts.unit_generations,
+      source: sources.goldberg_deb,
       expected: takeover,
       observed: null,
       standard_error: null,
-      sentence: selection.overlapping ?
-        "Generations until copies of the fittest fill all places but one; not predicted if most of a generation " +
-          "survives." :
-        takeover !== null ?
-        "Generations of selection alone, without mutation and crossover, until copies of the fittest fill all " +
-          "places but one." :
-        selection.pressure !== "rank" ?
-        "Generations until copies of the fittest fill all places but one; not predicted if each generation " +
-          "subtracts its lowest fitness, or if all fitness values are equal." :
-        "Generations until copies of the fittest fill all places but one: never, because every organism has the same " +
-          "chance.",
+      sentence: selection.overlapping ? theory_texts.takeover_overlapping :
+        takeover !== null             ? theory_texts.takeover_sentence :
+        selection.pressure !== "rank" ? theory_texts.takeover_of_fitness :
+                                        theory_texts.takeover_never,
     }
   ];
   return selection.independent_picks ? [...all, agreement(selection, comparison)] : all;

@@ -16,7 +16,7 @@ export function contestants_of(record: BreedingRecord, index: number): Contestan
     return [];
   }
   const contestants: Contestant[] =
-    (pick.contestants ?? []).map((organism: number) => ({organism, won: false, picked_now: false}));
+    (pick.contestants ?? []).map((organism) => ({organism, won: false, picked_now: false}));
   const same = (i: number): boolean => record.picks[i]?.tournament === pick.tournament;
   let first = index;
   while (first > 0 && same(first - 1)) {

@@ -1,6 +1,6 @@
 // Wheel layout: the slots of a selection wheel as arcs to draw. Neighbouring slots that are too narrow are merged. No
 // DOM.
-import type {Message} from "../core/messages";
+import type {Contender} from "../core/protocol";
 import {type Colour, ramp_at} from "../render/look";
 import {rank_of} from "./record";
 
@@ -15,11 +15,11 @@ export interface Arc {
 /** Returns the arcs in the order of the slots, without slots of width 0.
  *
  *  turns_min  neighbouring slots narrower than this are merged into arcs that are at least this wide */
-export function wheel_arcs(contenders: readonly Message[], turns_min: number): Arc[] {
+export function wheel_arcs(contenders: readonly Contender[], turns_min: number): Arc[] {
   const arcs: Arc[] = [];
   let open = false; // the last arc is still too narrow
   contenders.forEach((contender, organism) => {
-    const begin: number = contender.slot_begin ?? 0, end: number = contender.slot_end ?? 0, width = end - begin;
+    const begin = contender.slot_begin ?? 0, end = contender.slot_end ?? 0, width = end - begin;
     if (width <= 0) {
       return;
     }

@@ -14,36 +14,42 @@ export class CsvError {
 
 /** Returns the line of these cells, without its end. */
 export function csv_line(cells: readonly(string | number)[]): string {
-  return cells.map((cell) => (/[",\r\n]/.test(String(cell)) ? `"${String(cell).replaceAll('"', '""')}"` : cell))
-    .join(",");
+  return cells.map((cell) => (typeof cell === "number" ? cell : quoted(cell))).join(",");
 }
 
-/** Returns the records of a text. Empty lines are skipped, and so are lines with # before the first record, which are
+function quoted(cell: string): string {
+  return /[",\r\n]/.test(cell) ? `"${cell.replaceAll('"', '""')}"` : cell;
+}
+
+/** Returns the records of a text one after another, because those of a long text need much memory; ends with an error
+ *  if the text is not CSV. Empty lines are skipped, and so are lines with # before the first record, which are
  *  comments. */
-export function csv_records(text: string): CsvRecord[]|CsvError {
-  const records: CsvRecord[] = [];
+export function* csv_records(text: string): Generator<CsvRecord|CsvError, void> {
+  let is_first = true;
   let at = text.startsWith("\ufeff") ? 1 : 0;
   for (let line = 1; at < text.length;) {
     const end = end_of_line(text, at);
     const whole = text.slice(at, text[end - 1] === "\r" ? end - 1 : end);
-    if (whole === "" || (records.length === 0 && whole.startsWith("#"))) {
+    if (whole === "" || (is_first && whole.startsWith("#"))) {
       at = end + 1;
       ++line;
     } else if (!whole.includes('"')) {
-      records.push({line, cells: whole.split(",")});
+      is_first = false;
+      yield {line, cells: whole.split(",")};
       at = end + 1;
       ++line;
     } else {
       const read = quoted_record(text, at, line);
       if (read instanceof CsvError) {
-        return read;
+        yield read;
+        return;
       }
-      records.push({line, cells: read.cells});
+      is_first = false;
+      yield {line, cells: read.cells};
       at = read.at;
       line = read.line;
     }
   }
-  return records;
 }
 
 function end_of_line(text: string, at: number): number {

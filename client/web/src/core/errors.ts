@@ -6,8 +6,8 @@ export class DamagedData extends Error {
   override name = "DamagedData";
 }
 
-/** A message of the caller cannot be sent: it does not fit its type or is too long, and the text names the field; or there
- *  is no session for it. */
+/** A message of the caller cannot be sent: it does not fit its type or is too long, and the text names the field; or
+ *  there is no session for it. */
 export class InvalidMessage extends Error {
   override name = "InvalidMessage";
 }

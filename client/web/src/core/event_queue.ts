@@ -1,8 +1,8 @@
 // EventQueue: the events that the page has not taken yet, in order.
 //
 // A world without bodies can end thousands of generations per second. If the page is slower than the server, the queue
-// drops events about the progress of the simulation and adds an EventsDropped, so its memory stays bounded. Events about
-// clients are never dropped.
+// drops events about the progress of the simulation and adds an EventsDropped, so its memory stays bounded. Events
+// about clients are never dropped.
 import type {Event} from "./protocol";
 
 export class EventQueue {

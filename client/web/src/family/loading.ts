@@ -1,6 +1,7 @@
 // Loading: reads the lineage and the genes of a run from the server, and limits how much is read. No DOM.
 //
 // Exports    A session can have one export at a time, so the tables are read one after another.
+import type {ExportRun} from "../core/protocol";
 import type {Server} from "../world/server";
 import {GeneTable, PopulationReader} from "./gene_table";
 import {type Ancestor, LineageReader, type OrganismName} from "./lineage";
@@ -17,7 +18,7 @@ export interface LoadedLineage {
 
 /** Reads an export part by part until it is complete, or until `add` returns false. */
 async function read_export(
-  server: Server, wanted: {[field: string]: unknown},
+  server: Server, wanted: Omit<ExportRun, "format">,
   add: (text: Uint8Array|undefined, last: boolean) => boolean): Promise<{bytes: number; left_out: number}> {
   let part = await server.request("export_run", {...wanted, format: "TEXT_FORMAT_CSV"});
   let bytes = 0, left_out = 0;

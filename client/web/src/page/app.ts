@@ -31,8 +31,8 @@ const first_world = "default"; // shown first if the server has it
 export class App implements KeyTarget {
   readonly element: HTMLElement;
   readonly column: Column;
+  readonly panes: PaneAreas;
 
-  readonly #areas: PaneAreas;
   readonly #empty: HTMLElement;
   readonly #banners = new Banners();
   readonly #notices = new Notices();
@@ -48,7 +48,7 @@ export class App implements KeyTarget {
       "div", {class: "empty"}, h("p", {}, app_texts.no_world),
       h("button", {type: "button", class: "button button-primary", onclick: () => this.open("worlds", {create: true})},
         app_texts.new_world));
-    this.#areas = new PaneAreas(server, {
+    this.panes = new PaneAreas(server, {
       notify: this.notify,
       attempt: this.attempt,
       copy_link: this.copy_link,
@@ -64,13 +64,14 @@ export class App implements KeyTarget {
     this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
     const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, panels.map((make) => make(this)), new Tools(() => this.area().pane.tool, this.notify),
+      this, server, panels.map((make) => make(this)), new Tools(() => this.panes.focused.pane.tool, this.notify),
       [theme_button(), help, hide]);
     this.column.curve.append(this.#curve.element);
     this.element =
       h("div", {class: "app"},
-        h("a", {class: "button skip", href: "#worlds", onclick: (event: Event) => this.#skip(event)}, app_texts.skip),
-        this.#banners.element, this.#areas.element, this.#show_column, this.column.element, this.#notices.element);
+        h("a", {class: "button skip", href: "#worlds", onclick: (event: Event) => skip_to(this.panes, event)},
+          app_texts.skip),
+        this.#banners.element, this.panes.element, this.#show_column, this.column.element, this.#notices.element);
     set_attribute(this.element, "data-column", of_browser.get("column") === "collapsed" ? "collapsed" : "shown");
     server.on_change(() => this.refresh());
     server.on_event((event) => this.#announce(event));
@@ -94,12 +95,12 @@ export class App implements KeyTarget {
     }
     const ended = areas.length > 1 && areas.find((area) => area.world.name === ""); // its world was deleted
     if (ended) {
-      this.#areas.close(ended);
+      this.panes.close(ended);
     }
     const is_empty = server.worlds_known && names.length === 0;
     areas.forEach((area) => (area.element.hidden = is_empty));
     if (is_empty && !this.#empty.isConnected) {
-      this.#areas.element.append(this.#empty);
+      this.panes.element.append(this.#empty);
     } else if (!is_empty) {
       this.#empty.remove();
     }
@@ -110,12 +111,12 @@ export class App implements KeyTarget {
 
   /** The world of the pane with the focus. */
   world(): ViewedWorld {
-    return this.area().world;
+    return this.panes.focused.world;
   }
 
   /** The world of the other pane if two are shown side by side. */
   other(): ViewedWorld|null {
-    return this.#areas.other?.world ?? null;
+    return this.panes.other?.world ?? null;
   }
 
   open = (name: string, subject?: {[key: string]: unknown}): void => {
@@ -133,7 +134,7 @@ export class App implements KeyTarget {
   };
 
   place_by_clicks = (model: PlacedModel): boolean => {
-    const problem = this.area().pane.tool.place_copies_of(model);
+    const problem = this.panes.focused.pane.tool.place_copies_of(model);
     if (problem) {
       this.notify(problem);
     }
@@ -155,28 +156,11 @@ export class App implements KeyTarget {
   // ---- panes ----
 
   get areas(): readonly PaneArea[] {
-    return this.#areas.all;
-  }
-
-  /** The pane with the focus. */
-  area(): PaneArea {
-    return this.#areas.focused;
+    return this.panes.all;
   }
 
   show_beside(world: string, island = 0): ViewedWorld {
-    return this.#areas.show_beside(world, island);
-  }
-
-  toggle_beside(): void {
-    this.#areas.toggle_beside();
-  }
-
-  toggle_link(): void {
-    this.#areas.toggle_link();
-  }
-
-  focus_other(): void {
-    this.#areas.focus_other();
+    return this.panes.show_beside(world, island);
   }
 
   fork = async(name?: string): Promise<void> => {
@@ -237,13 +221,6 @@ export class App implements KeyTarget {
     this.#help.toggle();
   }
 
-  #skip(event: Event): void {
-    event.preventDefault();
-    (this.area().element.querySelector<HTMLElement>("canvas:not([inert]), .island-tile[tabindex='0']") ??
-     this.#areas.element)
-      .focus();
-  }
-
   #refresh_column(): void {
     if (this.column as Column | undefined) { // the first pane is there before the column
       this.column.refresh();
@@ -261,4 +238,11 @@ export class App implements KeyTarget {
       this.notify(event_text(event)[0] + ".");
     }
   }
+}
+
+/** Focuses the island that the panes show. */
+function skip_to({focused, element}: PaneAreas, event: Event): void {
+  event.preventDefault();
+  const island = focused.element.querySelector<HTMLElement>("canvas:not([inert]), .island-tile[tabindex='0']");
+  (island ?? element).focus();
 }

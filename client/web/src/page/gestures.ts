@@ -1,4 +1,5 @@
-// Gestures: what a user does with pointers, the wheel and the arrow keys on a canvas: pan, zoom, pinch, hover, click, hold arrow keys.
+// Gestures: what a user does with pointers, the wheel and the arrow keys on a canvas: pan, zoom, pinch, hover, click,
+// hold arrow keys.
 import type {Point} from "../render/camera";
 
 /** What the gestures act on. Points are in CSS pixels of the canvas. */

@@ -1,10 +1,11 @@
-// IslandLegend: explains the colours of the organisms in the lower left corner of the island: a colour scale, or entries. The same
-// texts as in evoview (client/viewer/island/legend.cpp).
+// IslandLegend: explains the colours of the organisms in the lower left corner of the island: a colour scale, or
+// entries.
 import {colours_of, css, ramp_at} from "../render/look";
 import type {Colour} from "../render/look";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {shown_number, with_separators} from "../texts/numbers";
+import {island_legend_texts as texts} from "../texts/island_legend";
+import {shown_number} from "../texts/numbers";
 import type {ViewedWorld} from "../world/world";
 
 interface Scale {
@@ -17,14 +18,6 @@ interface Entry {
   mark: "disc"|"ring"|"arrow";
   colour: string;
   text: string;
-}
-
-/** The gene's name with its unit: "food_radius, px". */
-export function gene_title(name: string): string {
-  return name +
-    (name === "food_radius" || name === "poison_radius" ? ", px" :
-       name.includes("<")                               ? "" :
-                                                          ", gene units");
 }
 
 const grey = "rgb(140, 140, 144)";
@@ -96,14 +89,13 @@ function scale_of(world: ViewedWorld): Scale|null {
     return null;
   }
   if (drawing.density !== null) {
-    const side = shown_number(drawing.density.cell_px);
-    return {title: `organisms in ${side} × ${side} px`, low: 0, high: drawing.density.most};
+    return {title: texts.density(drawing.density.cell_px), low: 0, high: drawing.density.most};
   }
   if (look.colour_by === "health") {
-    return {title: "health, points", low: 0, high: drawing.health_max};
+    return {title: texts.health, low: 0, high: drawing.health_max};
   }
   if (look.colour_by !== "" && look.colour_by !== "lineage" && drawing.gene_range !== null) {
-    return {title: gene_title(look.colour_by), low: drawing.gene_range[0], high: drawing.gene_range[1]};
+    return {title: texts.gene(look.colour_by), low: drawing.gene_range[0], high: drawing.gene_range[1]};
   }
   return null;
 }
@@ -120,33 +112,30 @@ function entries_of(world: ViewedWorld): {title: string; entries: Entry[]} {
   const colours = colours_of(look);
   if (look.colour_by === "lineage") {
     if (drawing.lineages === null || drawing.lineages.length === 0) {
-      add("disc", grey, "lineages not known yet");
+      add("disc", grey, texts.unknown_lineages);
     } else {
-      title = "lineages, counted from generation 1";
-      drawing.lineages.forEach(
-        ({founder, count, colour}) =>
-          add("disc", colour, `descendants of organism ${with_separators(founder)}: ${with_separators(count)}`));
+      title = texts.lineages;
+      drawing.lineages.forEach(({founder, count, colour}) => add("disc", colour, texts.lineage(founder, count)));
       const others = drawing.lineage_others;
       if (others !== null && others.lineages > 0) {
-        add("disc", grey, `${with_separators(others.lineages)} smaller lineages: ${with_separators(others.count)}`);
+        add("disc", grey, texts.smaller_lineages(others.lineages, others.count));
       }
       if (others !== null && others.placed > 0) {
-        add("disc", grey, `placed by a user, and their descendants: ${with_separators(others.placed)}`);
+        add("disc", grey, texts.placed(others.placed));
       }
     }
   }
   if (look.perception === "all" && population !== null) {
-    add("ring", colours.food_radius, "perception radius for food");
-    add("ring", colours.poison_radius, "perception radius for poison");
+    add("ring", colours.food_radius, texts.food_radius);
+    add("ring", colours.poison_radius, texts.poison_radius);
   }
   if (look.forces !== "none" && population?.forces) {
-    const length = "; an arrow of 30 px is 100 kg px/s²";
     if (drawing.headings) {
-      add("arrow", colours.wanders, "steered by its network" + length);
+      add("arrow", colours.wanders, texts.networks);
     } else {
-      add("arrow", colours.seeks, "seeks food");
-      add("arrow", colours.flees, "flees from poison");
-      add("arrow", colours.wanders, "wanders" + length);
+      add("arrow", colours.seeks, texts.seeks);
+      add("arrow", colours.flees, texts.flees);
+      add("arrow", colours.wanders, texts.wanders);
     }
   }
   return {title, entries};

@@ -1,5 +1,5 @@
-// IslandTiles: all islands of a world at once, as tiles over the canvas, in which the worker draws them. Each tile is a button, which
-// shows only its island.
+// IslandTiles: all islands of a world at once, as tiles over the canvas, in which the worker draws them. Each tile is a
+// button, which shows only its island.
 import type {FromWorker, TileInfo} from "../core/messages";
 import type {Size} from "../render/camera";
 import {tile_places, tiles_max} from "../render/tiles";
@@ -28,10 +28,10 @@ export class IslandTiles {
   #layout_key = "";
   #width: LabelWidth = "wide";
   readonly #world: ViewedWorld;
-  readonly #on_change: () => void;
+  readonly #on_change: (had_focus: boolean) => void;
 
-  /** on_change: called after the tiles were shown or hidden. */
-  constructor(world: ViewedWorld, on_change: () => void) {
+  /** on_change: called after the tiles were shown or hidden; had_focus: one of the tiles before. */
+  constructor(world: ViewedWorld, on_change: (had_focus: boolean) => void) {
     this.#world = world;
     this.#on_change = on_change;
     this.element.addEventListener("keydown", (event) => this.#key(event));
@@ -45,6 +45,10 @@ export class IslandTiles {
     return this.#world.snapshot?.island_count ?? this.#world.info?.island_count ?? 1;
   }
 
+  get has_focus(): boolean {
+    return this.element.contains(document.activeElement);
+  }
+
   /** Why all islands cannot be shown, as a sentence; empty if they can. */
   get problem(): string {
     const count = this.island_count;
@@ -55,9 +59,10 @@ export class IslandTiles {
   toggle(): string {
     const problem = this.is_on ? "" : this.problem;
     if (problem === "") {
+      const keeps_focus = document.activeElement instanceof HTMLButtonElement && !this.has_focus;
       this.#show(this.is_on ? 0 : this.island_count);
       this.can_return = false;
-      if (this.is_on) {
+      if (this.is_on && !keeps_focus) { // the canvas can have no focus now
         this.#focus(this.#world.island);
       }
     }
@@ -103,11 +108,15 @@ export class IslandTiles {
     this.#count = count;
     this.#infos = [];
     this.#layout_key = "";
+    const had_focus = this.has_focus;
     this.element.hidden = count === 0;
     this.#world.server.post({kind: "islands", pane: this.#world.pane, islands: count});
     this.#tiles = Array.from({length: count}, (_, island) => this.#tile(island));
     this.element.replaceChildren(...this.#tiles.map(({button}) => button));
-    this.#on_change();
+    this.#on_change(had_focus);
+    if (had_focus && count > 0) {
+      this.#focus(this.#world.island);
+    }
   }
 
   #tile(island: number): Tile {
@@ -123,7 +132,6 @@ export class IslandTiles {
     this.#world.choose_island(island);
     this.#show(0);
     this.can_return = true;
-    this.#on_change();
   }
 
   #lay_out(size: Size, aspect: number): void {

@@ -8,18 +8,15 @@ import {h} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
 import type {Column} from "./column";
-import type {PaneArea} from "./pane_area";
+import type {PaneAreas} from "./pane_areas";
 import {toggle_replay} from "./run_bar";
 
 /** What the keys act on. */
 export interface KeyTarget extends PanelContext {
   readonly server: Server;
   readonly column: Column;
-  area(): PaneArea;
+  readonly panes: PaneAreas;
   link(): string;
-  toggle_beside(): void;
-  toggle_link(): void;
-  focus_other(): void;
   toggle_column(): void;
   toggle_help(): void;
 }
@@ -80,26 +77,26 @@ const bindings: Binding[] = [
   },
   {keys: ["PageDown"], shown: "Page Down", help: key_help.next_island, act: (app) => move_island(app, 1)},
   {keys: ["PageUp"], shown: "Page Up", help: key_help.previous_island, act: (app) => move_island(app, -1)},
-  {keys: ["i"], help: key_help.all_islands, act: (app) => app.area().toggle_tiles(app.notify)},
+  {keys: ["i"], help: key_help.all_islands, act: (app) => app.panes.focused.toggle_tiles(app.notify)},
   {keys: ["w"], help: key_help.next_world, act: (app) => next_world(app)},
   {keys: ["p"], help: key_help.replay, act: (app) => toggle_replay(app, app.world())},
   {keys: ["["], help: key_help.previous_generation, act: (app) => move_generation(app, -1)},
   {keys: ["]"], help: key_help.next_generation, act: (app) => move_generation(app, 1)},
-  {keys: ["b"], help: key_help.beside, act: (app) => app.toggle_beside()},
-  {keys: ["x"], help: key_help.other_world, act: (app) => app.focus_other()},
-  {keys: ["k"], help: key_help.link, act: (app) => app.toggle_link()},
-  {keys: ["f", "Home"], shown: "F   Home", help: key_help.fit, act: (app) => app.area().pane.view.fit()},
+  {keys: ["b"], help: key_help.beside, act: (app) => app.panes.toggle_beside()},
+  {keys: ["x"], help: key_help.other_world, act: (app) => app.panes.focus_other()},
+  {keys: ["k"], help: key_help.link, act: (app) => app.panes.toggle_link()},
+  {keys: ["f", "Home"], shown: "F   Home", help: key_help.fit, act: (app) => app.panes.focused.pane.view.fit()},
   {
     keys: ["z"],
     shown: "Z   Shift+Z",
     help: key_help.zoom,
-    act: (app, event) => app.area().pane.view.zoom_by(event.shiftKey ? 1 / zoom_step : zoom_step)
+    act: (app, event) => app.panes.focused.pane.view.zoom_by(event.shiftKey ? 1 / zoom_step : zoom_step)
   },
   {
     keys: Object.keys(arrows),
     shown: "←   →   ↑   ↓",
     help: key_help.move,
-    act: (app, event) => app.area().pane.view.pan(arrows[event.key]!)
+    act: (app, event) => app.panes.focused.pane.view.pan(arrows[event.key]!)
   },
   {keys: ["l"], help: key_help.follow, act: (app) => app.world().selection.set_follow(!app.world().selection.follow)},
   {keys: ["c"], help: key_help.colour, act: (app) => next_colouring(app)},
@@ -262,7 +259,7 @@ function next_colouring(app: KeyTarget): void {
 }
 
 function escape(app: KeyTarget): void {
-  const {tool, tiles} = app.area().pane, world = app.world();
+  const {tool, tiles} = app.panes.focused.pane, world = app.world();
   if (tool.tool !== "select") {
     tool.set("select");
   } else if (world.selection.id !== null) {

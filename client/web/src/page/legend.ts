@@ -1,4 +1,6 @@
-// Legend: explains the marks of the island in one line: each mark as it is drawn, on the ground of the island, with its name.
+// Legend: explains the marks of the island in one line: each mark as it is drawn, on the ground of the island, with its
+// name.
+import {legend_texts} from "../texts/column";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text, svg} from "../widgets/dom";
 import type {ViewedWorld} from "../world/world";
@@ -7,19 +9,19 @@ type Mark = "organism"|"food"|"poison";
 
 export class Legend {
   readonly element = h("div", {class: "legend"});
-  #organism = h("span", {});
+  readonly #organism = h("span", {});
 
   constructor() {
     this.element.append(
       h("span", {class: "legend-item"}, mark("organism"), this.#organism),
-      h("span", {class: "legend-item"}, mark("food"), "food"),
-      h("span", {class: "legend-item"}, mark("poison"), "poison"));
+      h("span", {class: "legend-item"}, mark("food"), legend_texts.food),
+      h("span", {class: "legend-item"}, mark("poison"), legend_texts.poison));
   }
 
   refresh(world: ViewedWorld): void {
     set_attribute(this.element, "data-skin", world.look.skin);
     set_attribute(this.element, "data-background", world.look.background);
-    set_text(this.#organism, world.look.skin === "vivid" ? "organism, arc: health" : "organism, number: health");
+    set_text(this.#organism, legend_texts[world.look.skin]);
   }
 }
 

@@ -1,5 +1,7 @@
 // LinkFollower: shows the moment that a link names, or the nearest one that the server has, and says what was wrong
 // with the link.
+import {app_texts} from "../texts/app";
+import {wrong_link_texts as texts} from "../texts/start";
 import {Refusal} from "../world/server";
 import {nearest, read_link, within, type ReadLink} from "../world/link";
 import type {Banner} from "../widgets/notices";
@@ -24,7 +26,7 @@ export class LinkFollower {
   }
 
   banners(): Banner[] {
-    const action = {label: "Close", act: () => this.#say([])};
+    const action = {label: app_texts.close, act: () => this.#say([])};
     return this.#wrong === "" ? [] : [{name: "link", kind: "warn", text: this.#wrong, actions: [action]}];
   }
 
@@ -53,14 +55,14 @@ export class LinkFollower {
       return;
     }
     if (!info) {
-      const names = server.worlds.filter((one) => one.replay?.replay_of === undefined).map((one) => one.name as string);
-      read.wrong.unshift(`world: got ${name}, this server has ${names.length > 0 ? names.join(", ") : "no world"}`);
+      const names = server.worlds.filter((one) => one.replay?.replay_of === undefined).map(({name: listed}) => listed);
+      read.wrong.unshift(texts.no_such_world(name, names));
       this.#context.open("worlds");
       return;
     }
     const rate_max = Math.floor(server.limits.snapshot_rate_hz_max ?? rate_max_hz);
-    world.feed.set_rate(within(read, "rate", "this server", 1, rate_max));
-    const island = within(read, "island", `the world ${name}`, 0, Number(info.island_count ?? 1) - 1) ?? 0;
+    world.feed.set_rate(within(read, "rate", texts.this_server, 1, rate_max));
+    const island = within(read, "island", texts.world(name), 0, (info.island_count ?? 1) - 1) ?? 0;
     if (moment.generation === null || world.name !== name) {
       world.show(name, island);
     } else {
@@ -98,13 +100,13 @@ export class LinkFollower {
 
   #select(read: ReadLink, world: ViewedWorld): void {
     const {snapshot} = world, {organism} = read.moment, wrong_before = read.wrong.length;
-    const count = Number(snapshot!.live?.organism_count ?? 0);
+    const count = snapshot!.live?.organism_count ?? 0;
     if (organism === null) {
       world.selection.select(null);
       return;
     }
     if (count > 0) {
-      within(read, "organism", `generation ${snapshot!.generation}`, 0, count - 1);
+      within(read, "organism", texts.generation(snapshot!.generation), 0, count - 1);
     }
     if (read.wrong.length === wrong_before) {
       world.selection.select(organism);

@@ -1,5 +1,5 @@
-// LinkedViews: whether two worlds next to each other move and zoom together. Until the user decides, they do if their islands have
-// the same size. Of islands with different sizes, both views show the same part.
+// LinkedViews: whether two worlds next to each other move and zoom together. Until the user decides, they do if their
+// islands have the same size. Of islands with different sizes, both views show the same part.
 import type {PaneView} from "./pane_view";
 
 export class LinkedViews {

@@ -1,4 +1,6 @@
-// main: starts the page: loads the protocol, starts the worker, connects, and shows the worlds when the session is open.
+// main: starts the page: loads the protocol, starts the worker, connects, and shows the worlds when the session is
+// open.
+import {start_texts} from "../texts/start";
 import {show_icon} from "../widgets/icon";
 import {Server} from "../world/server";
 import {of_tab} from "../world/storage";
@@ -31,7 +33,7 @@ async function run(): Promise<void> {
   const linked = take_token(), tokens = new Tokens(of_tab), start = new Start();
   document.body.append(start.element);
   if (typeof OffscreenCanvas === "undefined") {
-    start.fail("This browser is too old: the page needs Chrome 111, Firefox 121, Safari 17 or a newer one.");
+    start.fail(start_texts.too_old);
     return;
   }
   const worker = start_worker();
@@ -43,7 +45,7 @@ async function run(): Promise<void> {
     }
     descriptor = await answer.arrayBuffer();
   } catch (error) {
-    start.fail(`The server does not send its protocol: ${(error as Error).message}`);
+    start.fail(start_texts.no_protocol((error as Error).message));
     return;
   }
   const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`;
@@ -65,8 +67,7 @@ async function run(): Promise<void> {
     }
   });
   start.follow(server, tokens);
-  worker.addEventListener(
-    "error", (event) => start.fail(`The page has failed: ${event.message || "its worker cannot be started"}`));
+  worker.addEventListener("error", (event) => start.fail(start_texts.failed(event.message)));
   const show_visibility = (): void => server.post({kind: "visible", visible: document.visibilityState !== "hidden"});
   document.addEventListener("visibilitychange", show_visibility);
   show_visibility();

@@ -3,16 +3,18 @@
 // The pane sends "pane", "close_pane", "resize", "camera", "islands", "pointer" and "pick" to the worker, which draws.
 // ViewedWorld sends "watch", "look", "select" and "population".
 import type {Drawing, FromWorker, ToWorker, Tool} from "../core/messages";
-import type {Point} from "../render/camera";
+import type {Point, Size} from "../render/camera";
 import {pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import type {ViewedWorld} from "../world/world";
+import {observe_size} from "./canvas_size";
 import {Gestures, type GestureTarget} from "./gestures";
 import {IslandLegend} from "./island_legend";
 import {IslandTiles} from "./island_tiles";
-import {PaneTool, type Picked} from "./pane_tool";
+import {PaneTool} from "./pane_tool";
 import {PaneView} from "./pane_view";
+import {Picker, type Picked} from "./picker";
 
 /** The worker as the pane sees it. */
 export interface WorkerLink {
@@ -33,14 +35,10 @@ export interface PaneOptions {
   on_tool?(): void;
   /** Called after the view has moved, and after the size of the island is known first. */
   on_view?(view: PaneView, why: "moved"|"known"): void;
-  /** Called after all islands, or only one, were shown. */
-  on_tiles?(): void;
 }
 
 const double_click_ms = 350, double_click_pixels = 20;
-const pick_radius = 12;
 const hint_offset = 16, hint_margin = 4; // of the hint from the pointer and from the edges
-const picks_per_pane = 1_000_000; // so that each answer has its own number
 
 export class Pane {
   readonly element: HTMLElement; // fills its container
@@ -57,9 +55,8 @@ export class Pane {
   readonly #world: ViewedWorld;
   readonly #gestures: Gestures;
   readonly #ends: (() => void)[] = [];
-  #pick: Promise<Picked|null>|null = null; // what was at the pressed point
-  readonly #picks = new Map<number, (picked: Picked|null) => void>();
-  #last_pick = 0;
+  readonly #picker: Picker;
+  #pick: Promise<Picked>|null = null; // what was at the pressed point
   #last_click: {at: Point; ms: number; selected: number | null}|null = null;
   #pointer: Point|null = null; // of a mouse or pen over the canvas
   #sent_pointer = "";
@@ -69,18 +66,24 @@ export class Pane {
     this.#world = options.world;
     this.view = new PaneView(this.#world, (view) => options.on_view?.(view, "moved"));
     this.tool = new PaneTool(this.#world, () => this.#tool_changed());
-    this.tiles = new IslandTiles(this.#world, () => this.#tiles_changed());
+    this.tiles = new IslandTiles(this.#world, (had_focus) => this.#tiles_changed(had_focus));
     this.element =
       h("div", {class: "pane"}, this.#canvas, this.#legend.element, this.#hint, this.#note, this.tiles.element,
         h("div", {class: "pane-focus"}));
+    this.#picker = new Picker(this.#world.pane, options.worker.post.bind(options.worker));
     this.#gestures = new Gestures(this.#canvas, this.#target());
     this.#canvas.addEventListener("pointerdown", () => options.on_focus?.());
     this.#canvas.addEventListener("focus", () => options.on_focus?.());
     this.#canvas.addEventListener("keydown", (event) => this.#key_down(event));
-    this.#observe_size();
     this.#ends.push(
+      observe_size(this.#canvas, (size, pixel_ratio) => this.#resized(size, pixel_ratio)),
       options.worker.on_message((message) => this.#take(message)), this.#world.changes.listen(() => this.#refresh()));
-    this.#transfer_canvas();
+    if (typeof this.#canvas.transferControlToOffscreen === "function") {
+      const canvas = this.#canvas.transferControlToOffscreen();
+      options.worker.post({kind: "pane", pane: this.#world.pane, canvas}, [canvas as unknown as Transferable]);
+    } else {
+      this.#show_note(pane_texts.no_offscreen_canvas);
+    }
     this.#refresh();
   }
 
@@ -91,23 +94,12 @@ export class Pane {
     this.element.remove();
   }
 
-  #transfer_canvas(): void {
-    if (typeof this.#canvas.transferControlToOffscreen === "function") {
-      const canvas = this.#canvas.transferControlToOffscreen();
-      this.#options.worker.post({kind: "pane", pane: this.#world.pane, canvas}, [canvas as unknown as Transferable]);
-    } else {
-      this.#show_note(pane_texts.no_offscreen_canvas);
-    }
-  }
-
   // ---- messages of the worker, changes of the world, the size ----
 
   #take(message: FromWorker): void {
     this.tiles.take(message);
-    if (message.kind === "picked") {
-      this.#picks.get(message.id)?.(message);
-      this.#picks.delete(message.id);
-    } else if (
+    this.#picker.take(message);
+    if (
       message.kind === "camera" && message.pane === this.#world.pane && this.#world.selection.follow &&
       !this.#gestures.is_panning) {
       this.view.followed(message.camera);
@@ -144,15 +136,14 @@ export class Pane {
     this.#options.on_view?.(this.view, "known");
   }
 
-  #tiles_changed(): void {
+  #tiles_changed(had_focus: boolean): void {
     const {is_on} = this.tiles;
     this.view.shows_all = is_on;
     this.#canvas.inert = is_on;
     this.#refresh();
-    if (!is_on) {
+    if (!is_on && had_focus) {
       this.#canvas.focus({preventScroll: true});
     }
-    this.#options.on_tiles?.();
   }
 
   #show_note(text: string): void {
@@ -160,31 +151,9 @@ export class Pane {
     this.#note.hidden = false;
   }
 
-  #observe_size(): void {
-    const observer = new ResizeObserver((entries) => this.#resized(entries[entries.length - 1]!));
-    try {
-      observer.observe(this.#canvas, {box: "device-pixel-content-box"});
-    } catch {
-      observer.observe(this.#canvas); // this browser does not know the size in device pixels
-    }
-    this.#ends.push(() => observer.disconnect());
-  }
-
-  #resized(entry: ResizeObserverEntry): void {
-    const {width, height} = entry.contentRect;
-    if (width === 0 || height === 0) {
-      return; // hidden
-    }
-    const device = entry.devicePixelContentBoxSize?.[0];
-    const device_pixels =
-      (exact: number|undefined, pixels: number): number => // the exact size is missing, or wrong in emulated devices
-      exact !== undefined && Math.abs(exact - pixels * devicePixelRatio) < 1.5 ?
-      exact :
-      Math.max(Math.round(pixels * devicePixelRatio), 1);
-    const pixel_ratio = device_pixels(device?.inlineSize, width) / width;
-    // Both are whole numbers of device pixels, so that nothing is blurred.
-    this.view.size = {width, height: device_pixels(device?.blockSize, height) / pixel_ratio};
-    this.#options.worker.post({kind: "resize", pane: this.#world.pane, ...this.view.size, pixel_ratio});
+  #resized(size: Size, pixel_ratio: number): void {
+    this.view.size = size;
+    this.#options.worker.post({kind: "resize", pane: this.#world.pane, ...size, pixel_ratio});
     this.#refresh();
   }
 
@@ -219,7 +188,7 @@ export class Pane {
   #target(): GestureTarget {
     return {
       pressed: (at) => {
-        this.#pick = this.#what_is_at(at);
+        this.#pick = this.#picker.what_is_at(at);
         this.#refresh_hint(this.#world.feed.drawing);
       },
       clicked: (at) => void this.#click(at, this.#pick!),
@@ -244,16 +213,8 @@ export class Pane {
     }
   }
 
-  #what_is_at(at: Point): Promise<Picked|null> {
-    const id = this.#world.pane * picks_per_pane + ++this.#last_pick;
-    return new Promise((resolve) => {
-      this.#picks.set(id, resolve);
-      this.#options.worker.post({kind: "pick", pane: this.#world.pane, id, x: at.x, y: at.y, radius: pick_radius});
-    });
-  }
-
   /** The organism that was under the pointer when it was pressed is meant, even if it has moved on since. */
-  async #click(at: Point, pick: Promise<Picked|null>): Promise<void> {
+  async #click(at: Point, pick: Promise<Picked>): Promise<void> {
     const now_ms = performance.now(), last = this.#last_click;
     this.#last_click = {at, ms: now_ms, selected: this.#world.selection.id};
     if (
@@ -267,11 +228,11 @@ export class Pane {
     }
     const picked = await pick;
     if (this.tool.tool === "select") {
-      this.#world.selection.select(picked?.organism ?? null);
-      if (picked?.organism != null) {
+      this.#world.selection.select(picked.organism);
+      if (picked.organism !== null) {
         this.#options.on_select?.();
       }
-    } else if (picked !== null && picked.x_px >= 0) { // it is on the island
+    } else if (picked.x_px >= 0) { // it is on the island
       const problem = await this.tool.use(picked);
       if (problem !== "") {
         this.#options.notify(problem);

@@ -1,12 +1,11 @@
 // PaneTool: what a click on the island does: select, place food, poison or an organism, or remove.
-import type {Drawing, FromWorker, Tool} from "../core/messages";
+import type {Drawing, Tool} from "../core/messages";
 import type {Place, Remove} from "../core/protocol";
 import {tool_texts} from "../texts/pane";
 import {gene_problem} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
-
-export type Picked = Extract<FromWorker, {kind: "picked"}>;
+import type {Picked} from "./picker";
 
 const organism_radius_px = 10; // copies are placed at least so far from the walls
 

@@ -96,7 +96,8 @@ export class PaneView {
     this.#on_move(this);
   }
 
-  /** Shows the part of this island that `other` shows of its island. A view that follows an organism takes only the zoom. */
+  /** Shows the part of this island that `other` shows of its island. A view that follows an organism takes only the
+   *  zoom. */
   show_same_part(other: PaneView): void {
     if (this.island === null || other.island === null) {
       return;

@@ -1,5 +1,6 @@
 // RunBar: the controls of the shown world that are always in reach: run and pause, one generation, replay, fork, speed.
 import {shown_number} from "../texts/numbers";
+import {run_bar_texts as texts} from "../texts/run_bar";
 import {speed_text} from "../texts/texts";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -35,68 +36,61 @@ export class RunBar {
     const button = (label: string, act: (world: ViewedWorld) => void, classes?: string): HTMLButtonElement =>
       guarded_button(label, context.notify, () => act(context.world()), classes);
     this.#run =
-      button("Run", (world) => this.#attempt(() => world.control.pause_or_resume()), "button button-primary run");
-    this.#generation = button("One generation", (world) => this.#attempt(() => world.control.run(1)));
-    this.#replay = button("Replay", (world) => toggle_replay(context, world));
-    this.#fork = button("Fork", () => void context.fork());
-    this.#new = button("New …", () => context.open("worlds", {create: true}), "button new");
+      button(texts.run, (world) => this.#attempt(() => world.control.pause_or_resume()), "button button-primary run");
+    this.#generation = button(texts.generation, (world) => this.#attempt(() => world.control.run(1)));
+    this.#replay = button(texts.replay, (world) => toggle_replay(context, world));
+    this.#fork = button(texts.fork, () => void context.fork());
+    this.#new = button(texts.create, () => context.open("worlds", {create: true}), "button new");
     this.#slower = button("−", (world) => this.#attempt(() => world.control.multiply_speed(0.5)), "button square");
     this.#faster = button("+", (world) => this.#attempt(() => world.control.multiply_speed(2)), "button square");
-    this.#max = button("Max", (world) => this.#attempt(() => world.control.toggle_max_speed()));
-    this.#slower.setAttribute("aria-label", "Halve the speed");
-    this.#faster.setAttribute("aria-label", "Double the speed");
+    this.#max = button(texts.max, (world) => this.#attempt(() => world.control.toggle_max_speed()));
+    this.#slower.setAttribute("aria-label", texts.slower);
+    this.#faster.setAttribute("aria-label", texts.faster);
     this.#slider = h("input", {
       type: "range",
       class: "grow",
       min: 0,
       max: slider_steps,
       step: 1,
-      "aria-label": "Speed, times real time",
+      "aria-label": texts.slider,
       oninput: () => this.#drag(),
       onchange: () => this.#drop(),
     });
     this.element =
       h("div", {class: "run-bar"},
         h("div", {class: "row"}, this.#run, this.#generation, this.#replay, this.#fork, this.#new),
-        h("div", {class: "row speed"}, h("span", {}, "Speed"), this.#slower, this.#slider, this.#faster, this.#value,
-          this.#max),
+        h("div", {class: "row speed"}, h("span", {}, texts.speed), this.#slower, this.#slider, this.#faster,
+          this.#value, this.#max),
         this.#slowed);
   }
 
   refresh(): void {
     const world = this.#context.world(), server = world.server, info = world.info;
     const why_control =
-      !world.shown || !(world.snapshot || info) ? "No world is open." : server.why_not("pause", world.shown);
+      !world.shown || !(world.snapshot || info) ? texts.no_world : server.why_not("pause", world.shown);
     const why_run = why_control ||
-      (world.control.state === "RUN_STATE_TERMINATED" ? "The run has ended." :
-         world.control.at_end                         ? "This is the end of the replay." :
+      (world.control.state === "RUN_STATE_TERMINATED" ? texts.has_ended :
+         world.control.at_end                         ? texts.end_of_replay :
                                                         "");
     set_text(
       this.#run,
-      world.control.state === "RUN_STATE_RUNNING"  ? "Pause" :
-        world.control.state === "RUN_STATE_PAUSED" ? "Resume" :
-                                                     "Run");
-    set_allowed(this.#run, why_run, "Runs or pauses the world (Space).");
-    set_allowed(
-      this.#generation, why_run,
-      "Runs the generation to its end, then waits. The next tick breeds the next generation.");
-    set_text(this.#replay, world.past.is_own_replay ? "Live" : "Replay");
+      world.control.state === "RUN_STATE_RUNNING"  ? texts.pause :
+        world.control.state === "RUN_STATE_PAUSED" ? texts.resume :
+                                                     texts.run);
+    set_allowed(this.#run, why_run, texts.run_help);
+    set_allowed(this.#generation, why_run, texts.generation_help);
+    set_text(this.#replay, world.past.is_own_replay ? texts.live : texts.replay);
     set_allowed(
       this.#replay, world.past.is_own_replay ? "" : world.past.problem,
-      world.past.is_own_replay ? "Returns to the live world (P)." :
-                                 "Shows earlier generations of this run, with a time line (P).");
+      world.past.is_own_replay ? texts.live_help : texts.replay_help);
     const why_create = server.why_not("create_world");
-    set_allowed(
-      this.#fork, !info ? "No world is open." : why_create,
-      "Creates a world that starts from the tick shown, and shows it beside this one.");
-    set_allowed(this.#new, why_create, "Creates a world, beside those that exist.");
+    set_allowed(this.#fork, !info ? texts.no_world : why_create, texts.fork_help);
+    set_allowed(this.#new, why_create, texts.create_help);
     const why_speed = why_control && (server.why_not("set_speed", world.shown) || why_control),
           max = world.control.speed?.max === true;
-    set_allowed(this.#slower, why_speed, "− halves the speed.");
-    set_allowed(
-      this.#faster, why_speed || (max ? "The world runs as fast as possible." : ""),
-      "+ doubles the speed; 1 is real time.");
-    set_allowed(this.#max, why_speed, "As fast as possible (M).");
+    set_allowed(this.#slower, why_speed, texts.slower_help);
+    set_allowed(this.#faster, why_speed || (max ? texts.is_fastest : ""), texts.faster_help);
+    set_allowed(this.#max, why_speed, texts.max_help);
     set_attribute(this.#max, "aria-pressed", String(max));
     this.#slider.disabled = why_speed !== "" || max;
     this.#slider.title = why_speed;
@@ -104,16 +98,13 @@ export class RunBar {
       this.#slider.value = String(position_of(world.control.factor));
       this.#say(max ? "max" : speed_text({real_time_factor: world.control.factor}));
     }
-    set_text(
-      this.#slowed,
-      world.snapshot?.slowed ? "The server cannot keep up: simulated time runs slower, no tick is skipped." : "");
+    set_text(this.#slowed, world.snapshot?.slowed ? texts.slowed : "");
   }
 
   #say(text: string): void {
     set_text(this.#value, text);
     set_attribute(
-      this.#slider, "aria-valuetext",
-      text === "max" ? "as fast as possible" : `${text.replace("×", "")} times real time`);
+      this.#slider, "aria-valuetext", text === "max" ? texts.max_value : texts.value(text.replace("×", "")));
   }
 
   #drag(): void {

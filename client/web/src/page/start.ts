@@ -1,10 +1,12 @@
-// Start: what the page shows while there is nothing to watch: connecting, a token is needed, the server refuses or is not there.
+// Start: what the page shows while there is nothing to watch: connecting, a token is needed, the server refuses or is
+// not there.
+import {start_texts as texts} from "../texts/start";
 import {h, set_text} from "../widgets/dom";
 import type {Server} from "../world/server";
 import type {Tokens} from "../world/tokens";
 
-/** Takes the token out of the address at once, so that it does not appear in the history, in a bookmark or in a shared link.
- *  Returns null if the address contains none. */
+/** Takes the token out of the address at once, so that it does not appear in the history, in a bookmark or in a shared
+ *  link. Returns null if the address contains none. */
 export function take_token(): string|null {
   const fields = new URLSearchParams(location.hash.slice(1)), token = fields.get("token");
   if (token !== null) {
@@ -17,28 +19,29 @@ export function take_token(): string|null {
 
 export class Start {
   readonly element: HTMLElement;
-  #title = h("h1", {}, "evod");
-  #text = h("p", {role: "status"});
-  #token = h("input", {class: "field grow", type: "password", id: "token", autocomplete: "off", spellcheck: "false"});
-  #form: HTMLFormElement;
-  #again: HTMLButtonElement;
+  readonly #title = h("h1", {}, texts.title);
+  readonly #text = h("p", {role: "status"});
+  readonly #token =
+    h("input", {class: "field grow", type: "password", id: "token", autocomplete: "off", spellcheck: "false"});
+  readonly #form: HTMLFormElement;
+  readonly #again: HTMLButtonElement;
 
   constructor() {
-    this.#form = h(
-      "form", {hidden: true},
-      h("label",
-        { for: "token"
-        },
-        "Token"),
-      h("div", {class: "row"}, this.#token, h("button", {type: "submit", class: "button button-primary"}, "Connect")),
-      h("p", {class: "hint"},
-        "The administrator of the server creates tokens with evod token add. The page keeps the token until this tab is closed. Leave the field empty if the server needs no token."));
+    this.#form =
+      h("form", {hidden: true},
+        h("label",
+          { for: "token"
+          },
+          texts.token),
+        h("div", {class: "row"}, this.#token,
+          h("button", {type: "submit", class: "button button-primary"}, texts.connect)),
+        h("p", {class: "hint"}, texts.token_help));
     this.#again =
       h("button", {type: "button", class: "button button-primary", hidden: true, onclick: () => location.reload()},
-        "Try again");
+        texts.try_again);
     this.element =
       h("main", {class: "start"}, h("div", {class: "start-card"}, this.#title, this.#text, this.#form, this.#again));
-    this.say("Connecting to the server …");
+    this.say(texts.connecting);
   }
 
   say(text: string): void {
@@ -67,14 +70,14 @@ export class Start {
     this.#form.hidden = !wants_token;
     this.#again.hidden = !(phase === "refused" && !wants_token);
     if (wants_token) {
-      this.say(tokens.used ? message : "The server requires a token.");
+      this.say(tokens.used ? message : texts.token_required);
       if (was_hidden && this.element.isConnected) {
         this.#token.focus();
       }
     } else if (phase === "connecting") {
-      this.say("Connecting to the server …");
+      this.say(texts.connecting);
     } else {
-      this.say(phase === "lost" ? `${message}. Trying again …` : message);
+      this.say(phase === "lost" ? texts.lost(message) : message);
     }
   }
 }

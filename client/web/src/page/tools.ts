@@ -1,5 +1,5 @@
-// Tools: what a click on the island does: select, place food, poison or a copy of an organism, or remove. Shown while the
-// user takes part.
+// Tools: what a click on the island does: select, place food, poison or a copy of an organism, or remove. Shown while
+// the user takes part.
 import {tool_buttons, tool_texts} from "../texts/pane";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";

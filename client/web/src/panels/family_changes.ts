@@ -1,9 +1,10 @@
 // FamilyChanges: which genes of an organism mutated when it was bred. Reads the breeding of its generation when the
 // pointer or the keyboard stays at the organism, a page of organisms at a time.
-import {gene_text, inheritance_of, mutation_text} from "../breeding/inheritance";
-import type {Message} from "../core/messages";
+import {inheritance_of, mutation_text} from "../breeding/inheritance";
+import type {Descendant} from "../core/protocol";
 import {name_key, type OrganismName} from "../family/lineage";
 import {gene_label} from "../organism/texts";
+import {gene_text} from "../texts/breeding";
 import {family_texts} from "../texts/family";
 import type {ViewedWorld} from "../world/world";
 
@@ -71,7 +72,7 @@ export class FamilyChanges {
 }
 
 /** "Mutated genes: impulse 101.2 → 98.7 (creep)." */
-function changes_text(descendant: Message, gene_names: readonly string[]): string {
+function changes_text(descendant: Descendant, gene_names: readonly string[]): string {
   const changes = inheritance_of(descendant)?.changes ?? [], order = descendant.order_mutation;
   return family_texts.changed_genes(
            changes.slice(0, changes_shown_max).map((change) => ({

@@ -234,18 +234,14 @@ export class FamilyDrawing {
       const {tree} = this.#scene, at = neighbour(tree, this.at, event.key, event.shiftKey);
       this.at = at;
       this.#set_view(revealed(this.#view, tree.width, tree.rows[at.row]![at.place]!.x));
-      this.#scroll_to(at);
+      this.#cursor.style.top = `${this.#layout?.y_of(at.row) ?? 0}px`;
+      this.#cursor.scrollIntoView({block: "nearest"});
       this.#actions.read(at);
     } else if (!this.#act(event.key, this.at)) {
       return;
     }
     event.preventDefault();
     event.stopPropagation();
-  }
-
-  #scroll_to({row}: Place): void {
-    this.#cursor.style.top = `${this.#layout?.y_of(row) ?? 0}px`;
-    this.#cursor.scrollIntoView({block: "nearest"});
   }
 
   /** Returns whether the drawing uses this key. */

@@ -58,12 +58,21 @@ export class FamilyMarks {
     const of_two = one && other ? ancestors_of_two(tree, one, other) : null;
     set_text(
       this.#text,
-      !one      ? family_texts.mark_two :
-        !other  ? family_texts.mark_another(organism_at(tree, one)) :
-        !of_two ? family_texts.two_have_none(organism_at(tree, one), organism_at(tree, other), tree.first_generation) :
-                  family_texts.two_descend_from(
-                    organism_at(tree, one), organism_at(tree, other), ancestors_in(tree, of_two)));
+      !one     ? family_texts.mark_two :
+        !other ? family_texts.mark_another(organism_at(tree, one)) :
+                 family_texts.marked(organism_at(tree, one), organism_at(tree, other)) +
+          sentence_of(tree, one, other, of_two));
     this.#clear.hidden = this.#marked.length === 0;
     return {places, of_two};
   }
+}
+
+function sentence_of(tree: FamilyTree, one: Place, other: Place, of_two: AncestorsOfTwo|null): string {
+  if (!of_two) {
+    return family_texts.two_have_none(tree.first_generation);
+  }
+  const is_common = ({row, place}: Place): boolean => row === of_two.row && of_two.places.includes(place);
+  return is_common(one) ? family_texts.one_descends_from_other("A", "B") :
+    is_common(other)    ? family_texts.one_descends_from_other("B", "A") :
+                          family_texts.two_descend_from(ancestors_in(tree, of_two));
 }

@@ -3,9 +3,7 @@
 import {contender_text} from "../breeding/caption";
 import {type Comparison, pick_columns, rank_columns} from "../breeding/comparison";
 import {
-  delta_text,
   gene_blocks,
-  gene_text,
   type GeneOrigin,
   type Inheritance,
   inheritance_of,
@@ -17,10 +15,11 @@ import {type BreedingRecord, rank_of, slot_of} from "../breeding/record";
 import {contestants_of} from "../breeding/tournament";
 import {point_at, rank_colour, ring_path, text_on, wheel_arcs} from "../breeding/wheel";
 import {gene_label} from "../organism/texts";
-import type {Message} from "../core/messages";
-import {h, svg} from "../widgets/dom";
-import {three_digits, with_separators, with_sign} from "../texts/numbers";
+import type {Descendant} from "../core/protocol";
 import {css} from "../render/look";
+import {delta_text, gene_text} from "../texts/breeding";
+import {glass_box_texts} from "../texts/glass_box";
+import {h, svg} from "../widgets/dom";
 
 const columns_max = 12; // genes in the table of a descendant; more are drawn as small cells
 
@@ -69,7 +68,7 @@ export class WheelDrawing {
         svg(
           "title", {},
           arc.first === arc.last ? contender_text(arc.first, record.contenders[arc.first]!, complete) :
-                                   `organisms ${arc.first} to ${arc.last}: slots too narrow to draw`)));
+                                   glass_box_texts.narrow_slots(arc.first, arc.last))));
       if (arc.first === arc.last && length > 24) {
         const {x, y} = point_at(centre, middle, (arc.begin + arc.end) / 2);
         this.element.append(svg("text", {class: "wheel-label", x, y, fill: text_on(colour)}, String(arc.first)));
@@ -124,9 +123,9 @@ export class WheelDrawing {
     if (chosen) {
       const wide = inner > 65;
       const lines = [
-        `organism ${pick!.organism ?? 0}`,
-        `rank ${with_separators(rank_of(chosen) + 1)}${wide ? ` of ${with_separators(record.contender_count)}` : ""}`,
-        `${three_digits(100 * slot_of(chosen))} %${wide ? " of the wheel" : ""}`
+        glass_box_texts.slot_organism(pick!.organism ?? 0),
+        glass_box_texts.slot_rank(rank_of(chosen), wide ? record.contender_count : null),
+        glass_box_texts.slot_share(slot_of(chosen), wide)
       ];
       lines.forEach(
         (line, i) => parts.push(svg("text", {class: "wheel-centre", x: centre, y: centre + 19 * (i - 1)}, line)));
@@ -143,7 +142,7 @@ export function draw_tournament(record: BreedingRecord, index: number, complete:
   const fitness = contestants.map((contestant) => record.contenders[contestant.organism]?.fitness ?? 0);
   const least = Math.min(0, ...fitness), span = Math.max(0, ...fitness) - least || 1;
   return h(
-    "ol", {class: "tournament", "aria-label": "Contestants in the order drawn"}, ...contestants.map((contestant, i) => {
+    "ol", {class: "tournament", "aria-label": glass_box_texts.contestants}, ...contestants.map((contestant, i) => {
       const contender = record.contenders[contestant.organism];
       const bar = h("span", {class: "tournament-bar"});
       bar.style.width = `${(100 * (fitness[i]! - least) / span).toFixed(1)}%`;
@@ -157,7 +156,8 @@ export function draw_tournament(record: BreedingRecord, index: number, complete:
         },
         h("span", {class: "tournament-id"}, String(contestant.organism)), h("span", {class: "tournament-track"}, bar),
         h("span", {class: "tournament-value"},
-          contender ? three_digits(contender.fitness ?? 0) + (contestant.won ? " won" : "") : "…"));
+          contender ? glass_box_texts.contestant_fitness(contender.fitness ?? 0, contestant.won) :
+                      glass_box_texts.unknown));
     }));
 }
 
@@ -177,9 +177,8 @@ function draw_bars(
   const least = values.reduce((a, b) => Math.min(a, b), 0), most = values.reduce((a, b) => Math.max(a, b), 0),
         span = most - least || 1;
   const y_of = (value: number): number => bottom - (value - least) / span * (bottom - top);
-  const range = `${three_digits(values[0] ?? 0)} (rank 1) to ${three_digits(values[count - 1] ?? 0)} (rank ` +
-    `${with_separators(count)})`;
-  const image = drawing(width, height, `${bars.title} by rank: ${range}`);
+  const range = glass_box_texts.rank_range(values[0] ?? 0, values[count - 1] ?? 0, count);
+  const image = drawing(width, height, glass_box_texts.by_rank(bars.title, range));
   image.append(
     svg("text", {class: "drawing-title", x: 0, y: 10}, bars.title),
     svg("text", {class: "drawing-quiet", x: width, y: 10, "text-anchor": "end"}, range));
@@ -202,7 +201,7 @@ function draw_bars(
       svg(
         "title", {},
         ranks.length === 1 ? contender_text(organism, record.contenders[organism]!, complete) :
-                             `ranks ${first + 1} to ${end}`)));
+                             glass_box_texts.ranks(first, end - 1))));
     if (ranks.some((rank) => comparison.organisms[rank] === bars.current)) {
       image.append(svg(
         "polygon", {class: "pointer", points: `${middle - 6},${y - 12} ${middle + 6},${y - 12} ${middle},${y - 2}`}));
@@ -225,11 +224,13 @@ export function draw_ranking(
   return h(
     "div", {class: "panel"},
     draw_bars(
-      record, comparison, {title: "Fitness", value_of: (rank) => comparison.fitness[rank]!, copies, current}, width,
+      record, comparison,
+      {title: glass_box_texts.fitness, value_of: (rank) => comparison.fitness[rank]!, copies, current}, width,
       scaled ? 150 : 220, complete),
     scaled &&
       draw_bars(
-        record, comparison, {title: "Weight", value_of: weight_of, copies: [], current: null}, width, 150, complete));
+        record, comparison, {title: glass_box_texts.weight, value_of: weight_of, copies: [], current: null}, width, 150,
+        complete));
 }
 
 /** The picks up to `index` in order, coloured by rank. */
@@ -237,7 +238,7 @@ export function draw_picks(
   record: BreedingRecord, index: number, width: number, go_to: (pick: number) => void): SVGSVGElement {
   const columns = pick_columns(record, index, Math.floor(width / 2));
   const each = Math.min(14, width / Math.max(columns.length, 1));
-  const image = drawing(width, 20, `Picks in order: ${index + 1} of ${record.pick_count}`);
+  const image = drawing(width, 20, glass_box_texts.picks_in_order(index, record.pick_count));
   columns.forEach(
     (column, i) => image.append(svg(
       "rect", {
@@ -249,7 +250,7 @@ export function draw_picks(
         fill: column.rank === null ? null : colour_of(record, column.rank),
         onclick: () => go_to(column.first),
       },
-      svg("title", {}, `pick ${column.first + 1}`))));
+      svg("title", {}, glass_box_texts.one_pick(column.first)))));
   const now = columns.findIndex((column) => column.first <= index && index <= column.last);
   image.append(svg(
     "rect", {class: "strip-current", x: Math.max(0, now * each - 1), y: 1, width: Math.max(each, 2) + 1, height: 18}));
@@ -270,10 +271,8 @@ export function draw_copies(
   const deviation_max = 4, zero = (lower_top + lower_bottom) / 2; // larger deviations are drawn at the end of the axis
   const deviation_y = (off: number): number =>
     zero - Math.min(Math.max(off, -deviation_max), deviation_max) / deviation_max * (lower_bottom - lower_top) / 2;
-  const image = drawing(
-    width, complete ? lower_bottom + 4 : bottom + 20,
-    "Picks by rank, observed and expected; the table below has the numbers");
-  image.append(svg("text", {class: "drawing-title", x: 0, y: 10}, "Picks by rank; line: expected ± standard error"));
+  const image = drawing(width, complete ? lower_bottom + 4 : bottom + 20, glass_box_texts.copies_label);
+  image.append(svg("text", {class: "drawing-title", x: 0, y: 10}, glass_box_texts.copies_title));
   const each = right / columns.length, gap = each > 5 ? 1 : 0;
   if (complete) {
     image.append(
@@ -281,18 +280,20 @@ export function draw_copies(
         "rect",
         {class: "expected-band", x: 0, y: deviation_y(2), width: right, height: deviation_y(-2) - deviation_y(2)}),
       svg("line", {class: "axis", x1: 0, x2: right, y1: zero, y2: zero}),
-      svg("text", {class: "drawing-title", x: 0, y: lower_top - 12}, "Deviation in standard errors"),
-      svg("text", {class: "drawing-quiet", x: width, y: deviation_y(2), "text-anchor": "end"}, "+2"),
-      svg("text", {class: "drawing-quiet", x: width, y: deviation_y(-2), "text-anchor": "end"}, "−2"));
+      svg("text", {class: "drawing-title", x: 0, y: lower_top - 12}, glass_box_texts.deviation_title),
+      svg(
+        "text", {class: "drawing-quiet", x: width, y: deviation_y(2), "text-anchor": "end"}, glass_box_texts.plus_two),
+      svg(
+        "text", {class: "drawing-quiet", x: width, y: deviation_y(-2), "text-anchor": "end"},
+        glass_box_texts.minus_two));
   }
   columns.forEach((column, i) => {
     const x = i * each, middle = x + (each - gap) / 2;
     const note = (column.first === column.last ?
-                    `rank ${column.first + 1}: organism ${comparison.organisms[column.first]}, fitness ` +
-                      `${three_digits(comparison.fitness[column.first]!)}` :
-                    `ranks ${column.first + 1} to ${column.last + 1}`) +
-      `; picks ${with_separators(column.copies)}, expected ${three_digits(column.expected)} ± ` +
-      `${three_digits(column.standard_error)}` + (complete ? `; ${with_sign(column.deviation)} standard errors` : "");
+                    glass_box_texts.one_rank(
+                      column.first, comparison.organisms[column.first]!, comparison.fitness[column.first]!) :
+                    glass_box_texts.ranks(column.first, column.last)) +
+      glass_box_texts.copies(column.copies, column.expected, column.standard_error, complete ? column.deviation : null);
     const group = svg(
       "g", {}, svg("title", {}, note),
       svg("rect", {class: "hover-area", x, y: top, width: each, height: (complete ? lower_bottom : bottom) - top}),
@@ -326,10 +327,10 @@ export function draw_copies(
   });
   image.append(
     svg("line", {class: "axis", x1: 0, x2: right, y1: bottom, y2: bottom}),
-    svg("text", {class: "drawing-quiet", x: 0, y: bottom + 12}, "rank 1"),
+    svg("text", {class: "drawing-quiet", x: 0, y: bottom + 12}, glass_box_texts.rank_label(0)),
     svg(
       "text", {class: "drawing-quiet", x: right, y: bottom + 12, "text-anchor": "end"},
-      `rank ${with_separators(comparison.organisms.length)}`));
+      glass_box_texts.rank_label(comparison.organisms.length - 1)));
   return image;
 }
 
@@ -341,8 +342,8 @@ export function draw_descendants(
   const count = Math.max(record.descendant_count, 1), each = Math.min(14, width / count), gap = each > 4 ? 1 : 0;
   const image = drawing(
     width, 20,
-    current === null ? "The next generation" :
-                       `Organism ${current} of ${record.descendant_count} in the next generation`);
+    current === null ? glass_box_texts.next_generation :
+                       glass_box_texts.descendant_of(current, record.descendant_count));
   const part = (begin: number, end: number, kind: string): void => {
     for (let i = begin; i<end; i += gap>0 ? 1 : end - begin) { // narrow cells form one bar
       image.append(svg(
@@ -368,16 +369,16 @@ export function draw_descendants(
 export function descendants_legend(): HTMLElement {
   const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
   return h(
-    "p", {class: "hint glass-legend"}, swatch("elite", "elite"), swatch("survivor", "survivors"),
-    swatch("child", "children"));
+    "p", {class: "hint glass-legend"}, swatch("elite", glass_box_texts.elite),
+    swatch("survivor", glass_box_texts.survivors), swatch("child", glass_box_texts.children));
 }
 
 function parents_legend(alone: boolean): HTMLElement {
   const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
   return h(
-    "p", {class: "hint glass-legend"}, !alone && swatch("first", "gene of the first parent"),
-    !alone && swatch("second", "of the second parent"), !alone && swatch("blended", "blended"),
-    !alone && swatch("cut", "cut"), swatch("mutated", "mutated or clamped"));
+    "p", {class: "hint glass-legend"}, !alone && swatch("first", glass_box_texts.first_parent),
+    !alone && swatch("second", glass_box_texts.second_parent), !alone && swatch("blended", glass_box_texts.blended),
+    !alone && swatch("cut", glass_box_texts.cut), swatch("mutated", glass_box_texts.mutated));
 }
 
 function kind_of(origin: GeneOrigin): string {
@@ -388,15 +389,15 @@ function kind_of(origin: GeneOrigin): string {
  *  chromosome, only the genes of the body are columns; a small cell shows from which parent each other gene comes.
  *
  *  body_count  the number of genes of the body, which come first */
-export function draw_family(descendant: Message, gene_names: readonly string[], body_count: number): HTMLElement {
+export function draw_family(descendant: Descendant, gene_names: readonly string[], body_count: number): HTMLElement {
   const inheritance = inheritance_of(descendant);
   if (!inheritance) {
-    return h("p", {class: "error"}, "The genes of this organism are unknown: its lists contradict each other.");
+    return h("p", {class: "error"}, glass_box_texts.contradiction);
   }
   const all = inheritance.genes.length;
   const count = all > columns_max && body_count > 0 ? Math.min(body_count, all) : all;
   const genes = Array.from({length: count}, (_, gene) => gene);
-  const names = Array.from({length: all}, (_, gene) => gene_names[gene] ?? `gene ${gene + 1}`);
+  const names = Array.from({length: all}, (_, gene) => gene_names[gene] ?? glass_box_texts.unnamed_gene(gene));
   const cell = (gene: number, value: number, kind: string, title: string): HTMLElement =>
     h("td", {
       class: `gene-cell ${kind}${inheritance.cuts.includes(gene) ? " cut" : ""}`,
@@ -412,48 +413,50 @@ export function draw_family(descendant: Message, gene_names: readonly string[], 
       return cell(
         gene, (second ? inheritance.second : inheritance.first)[gene]!,
         (second ? "second" : "first") + (given ? "" : " not-given"),
-        `${gene_label(names[gene]!)}: ` +
-          `${given ? "the child received this gene" : "the child did not receive this gene"}`);
+        glass_box_texts.gene_received(gene_label(names[gene]!), given));
     }));
-  const rows = [parent_row(false, inheritance.alone ? "itself" : "parent")];
+  const rows = [parent_row(false, inheritance.alone ? glass_box_texts.itself : glass_box_texts.parent)];
   if (!inheritance.alone) {
-    rows.push(parent_row(true, "parent"), row("crossed", "crossed-row", genes.map((gene) => {
-                const origin = inheritance.crossed[gene]!;
-                return cell(
-                  gene, origin.value, kind_of(origin),
-                  `${gene_label(names[gene]!)}: ` +
-                    (origin.blended       ? "a mean of both parents" :
-                       origin.from_second ? "from the second parent" :
-                                            "from the first parent"));
-              })));
+    rows.push(
+      parent_row(true, glass_box_texts.parent), row(glass_box_texts.crossed, "crossed-row", genes.map((gene) => {
+        const origin = inheritance.crossed[gene]!;
+        return cell(
+          gene, origin.value, kind_of(origin),
+          origin.blended       ? glass_box_texts.from_both(gene_label(names[gene]!)) :
+            origin.from_second ? glass_box_texts.from_second(gene_label(names[gene]!)) :
+                                 glass_box_texts.from_first(gene_label(names[gene]!)));
+      })));
   }
   if (descendant.order_mutation) {
-    rows.push(row(descendant.order_mutation.method ?? "order", "arranged-row", genes.map((gene) => {
+    rows.push(row(descendant.order_mutation.method ?? glass_box_texts.order, "arranged-row", genes.map((gene) => {
       const origin = inheritance.arranged[gene]!;
       return h(
         "td", {class: `gene-cell ${kind_of(origin)}`}, gene_text(origin.value),
-        origin.gene === gene ? null : h("span", {class: "gene-moved"}, `from ${gene_label(names[origin.gene]!)}`));
+        origin.gene === gene ?
+          null :
+          h("span", {class: "gene-moved"}, glass_box_texts.moved_from(gene_label(names[origin.gene]!))));
     })));
   }
   if (inheritance.changes.some((change) => change.gene < count)) {
     rows.push(row(
-      "mutations", "mutation-row",
+      glass_box_texts.mutations, "mutation-row",
       genes.map(
-        (gene) =>
-          h("td", {},
-            ...inheritance.changes.filter((change) => change.gene === gene)
-              .map(
-                (change) =>
-                  h("div", {
-                    class: change.kind === "MUTATION_KIND_CLAMP" ? "gene-change clamped" : "gene-change",
-                    title: `${delta_text(change.after - change.before)} by ${mutation_text(change.kind)}`,
-                  },
-                    h("span", {}, gene_text(change.before)), h("span", {}, `→ ${gene_text(change.after)}`),
-                    h("span", {}, mutation_text(change.kind))))))));
+        (gene) => h(
+          "td", {},
+          ...inheritance.changes.filter((change) => change.gene === gene)
+            .map(
+              (change) =>
+                h("div", {
+                  class: change.kind === "MUTATION_KIND_CLAMP" ? "gene-change clamped" : "gene-change",
+                  title: glass_box_texts.mutation(delta_text(change.after - change.before), mutation_text(change.kind)),
+                },
+                  h("span", {}, gene_text(change.before)),
+                  h("span", {}, glass_box_texts.changed_to(gene_text(change.after))),
+                  h("span", {}, mutation_text(change.kind))))))));
   }
   const final: number[] = descendant.genes ?? inheritance.genes;
   rows.push(row(
-    `organism ${descendant.id ?? 0}`, "organism-row",
+    glass_box_texts.organism_row(descendant.id ?? 0), "organism-row",
     genes.map(
       (gene) =>
         h("td", {
@@ -473,10 +476,8 @@ export function draw_family(descendant: Message, gene_names: readonly string[], 
 
 /** The genes that are not columns as small cells in the colours of their parents, neuron by neuron. */
 function draw_other_genes(
-  inheritance: Inheritance, first: number, names: readonly string[], descendant: Message): HTMLElement {
-  const note =
-    h("p", {class: "hint gene-note", "aria-live": "polite"},
-      "Point at a cell to read its gene; with the keyboard: arrow keys.");
+  inheritance: Inheritance, first: number, names: readonly string[], descendant: Descendant): HTMLElement {
+  const note = h("p", {class: "hint gene-note", "aria-live": "polite"}, glass_box_texts.other_genes_help);
   const cells: HTMLElement[] = [];
   const show = (event: Event): void => { // texts are made when they are read: there may be thousands of cells
     const cell = event.target as HTMLElement, gene = cell.dataset.gene;
@@ -521,7 +522,7 @@ function draw_other_genes(
     h("div", {
       class: "gene-blocks",
       role: "group",
-      "aria-label": "Other genes",
+      "aria-label": glass_box_texts.other_genes,
       onkeydown: press,
       onmouseover: show,
       onfocusin: show

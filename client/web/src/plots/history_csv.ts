@@ -1,6 +1,7 @@
 // history_csv: the statistics of runs as CSV, with the columns of `evod export --what generations`. Pure functions.
 import {csv_line, csv_records, CsvError} from "../core/csv";
 import type {CsvRecord} from "../core/csv";
+import {none_left} from "../core/messages";
 import type {GenerationStatistics} from "../core/protocol";
 import {history_csv_texts as texts} from "../texts/history_csv";
 import type {AccountPart, GenePart, NumberColumn} from "./history_table";
@@ -13,7 +14,7 @@ const number_columns: readonly NumberColumn[] = [
 ];
 const gene_parts: readonly GenePart[] = ["mean", "deviation", "min", "max"];
 const account_parts: readonly AccountPart[] = ["selection", "transmission", "migration", "change"];
-const island_max = 65535;
+const island_max = 65535, generation_max = 2 ** 32;
 
 /** Statistics that a file contains. */
 export type Statistics = GenerationStatistics&{
@@ -50,54 +51,81 @@ export function history_csv(history: readonly GenerationStatistics[], gene_names
 /** Reads a table in any order of columns. Other columns, such as cell and replicate of `evod sweep`, distinguish the
  *  runs of the table. Returns the runs; or a sentence that names the wrong line, without a full stop. */
 export function read_history_csv(text: string): HistoryCsv|string {
-  const records = csv_records(text);
-  if (records instanceof CsvError) {
-    return records.wrong === "open quote" ? texts.open_quote(records.line) : texts.text_after_quote(records.line);
+  let heading: CsvRecord|null = null, columns: Columns|null = null;
+  const groups = new Map<string, Group>();
+  for (const record of csv_records(text)) {
+    if (record instanceof CsvError) {
+      return error_text(record);
+    }
+    if (columns === null) {
+      const read = columns_of(record);
+      if (typeof read === "string") {
+        return read;
+      }
+      heading = record;
+      columns = read;
+      continue;
+    }
+    const wrong = add_row(groups, record, columns);
+    if (wrong !== "") {
+      return wrong;
+    }
   }
-  const [heading, ...rows] = records;
-  if (heading === undefined) {
+  if (heading === null || columns === null) {
     return texts.empty;
   }
-  const columns = columns_of(heading);
-  if (typeof columns === "string") {
-    return columns;
+  return groups.size === 0 ? texts.no_rows(heading.line) :
+                             {runs: runs_of([...groups.values()], columns), gene_names: columns.gene_names};
+}
+
+function error_text({line, wrong}: CsvError): string {
+  switch (wrong) {
+    case "open quote":
+      return texts.open_quote(line);
+    case "text after quote":
+      return texts.text_after_quote(line);
+    default:
+      none_left(wrong);
+      return "";
   }
-  if (rows.length === 0) {
-    return texts.no_rows(heading.line);
+}
+
+/** Adds a row to the rows of its run. Returns what is wrong with it; empty: nothing. */
+function add_row(groups: Map<string, Group>, row: CsvRecord, columns: Columns): string {
+  const statistics = row_of(row, columns);
+  if (typeof statistics === "string") {
+    return statistics;
   }
-  const groups = new Map<string, Group>();
-  for (const row of rows) {
-    const statistics = row_of(row, columns);
-    if (typeof statistics === "string") {
-      return statistics;
-    }
-    const key = JSON.stringify(columns.others.map(([, at]) => row.cells[at]));
-    const group = groups.get(key) ?? {cells: row.cells, history: [], places: new Set<string>()};
-    groups.set(key, group);
-    const {generation, island} = statistics, place = `${generation}/${island}`;
-    if (group.places.has(place)) {
-      return texts.twice(row.line, generation, island);
-    }
-    group.places.add(place);
-    group.history.push(statistics);
+  const key = JSON.stringify(columns.others.map(([, at]) => row.cells[at]));
+  const group = groups.get(key) ?? {cells: row.cells, history: [], places: new Set<number>()};
+  groups.set(key, group);
+  const {generation, island} = statistics, place = generation * (island_max + 1) + island;
+  if (group.places.has(place)) {
+    return texts.twice(row.line, generation, island);
   }
-  return {runs: runs_of([...groups.values()], columns), gene_names: columns.gene_names};
+  group.places.add(place);
+  group.history.push(statistics);
+  return "";
 }
 
 /** The rows with the same cells in all columns that are not statistics. */
 interface Group {
   cells: readonly string[]; // of its first row
   history: Statistics[];
-  places: Set<string>; // generations and islands
+  places: Set<number>; // generations and islands
 }
 
+/** The place of a column: its name and its index. */
+type Place<Name extends string = string> = readonly[Name, number];
+
 interface Columns {
-  at: ReadonlyMap<string, number>; // the index of each column
   count: number;
   gene_names: string[];
-  required: string[];
-  accounts: string[]; // may be absent or empty
-  others: [string, number][]; // columns that are not statistics
+  required: Place[]; // cells that must be numbers
+  accounts: Place[]; // cells that may be empty
+  numbers: Place<NumberColumn>[];
+  genes: {parts: Place<GenePart>[]; account: Place<AccountPart>[] | null}[];
+  others: Place[]; // columns that are not statistics
 }
 
 function columns_of({line, cells}: CsvRecord): Columns|string {
@@ -115,43 +143,58 @@ function columns_of({line, cells}: CsvRecord): Columns|string {
   if (missing !== undefined) {
     return texts.no_column(line, missing);
   }
-  const accounts = of_genes(account_parts), statistics = new Set([...required, ...accounts]);
-  const others = [...at].filter(([name]) => !statistics.has(name));
-  return {at, count: cells.length, gene_names, required, accounts, others};
+  const accounts = of_genes(account_parts).filter((name) => at.has(name));
+  const place = (name: string): Place => [name, at.get(name)!];
+  const places_of = <Part extends string>(gene: string, parts: readonly Part[]): Place<Part>[] =>
+    parts.map((part) => [part, at.get(`${gene}_${part}`)!]);
+  const statistics = new Set([...required, ...accounts]);
+  return {
+    count: cells.length,
+    gene_names,
+    required: required.map(place),
+    accounts: accounts.map(place),
+    numbers: number_columns.map((name) => [name, at.get(name)!]),
+    genes: gene_names.map(
+      (gene) => ({
+        parts: places_of(gene, gene_parts),
+        account: account_parts.every((part) => at.has(`${gene}_${part}`)) ? places_of(gene, account_parts) : null
+      })),
+    others: [...at].filter(([name]) => !statistics.has(name)),
+  };
 }
 
 /** Returns GenerationStatistics; or a sentence that says what is wrong. */
-function row_of({line, cells}: CsvRecord, {at, count, gene_names, required, accounts}: Columns): Statistics|string {
-  if (cells.length !== count) {
-    return texts.cell_count(line, cells.length, count);
+function row_of({line, cells}: CsvRecord, columns: Columns): Statistics|string {
+  if (cells.length !== columns.count) {
+    return texts.cell_count(line, cells.length, columns.count);
   }
-  const cell = (name: string): string => cells[at.get(name) ?? -1] ?? "";
-  const is_number = (text: string): boolean => text.trim() !== "" && Number.isFinite(Number(text));
-  const wrong = required.find((name) => !is_number(cell(name)));
+  const numbers = cells.map((cell) => (cell.trim() === "" ? NaN : Number(cell)));
+  const wrong = columns.required.find(([, at]) => !Number.isFinite(numbers[at]));
   if (wrong !== undefined) {
-    return texts.not_a_number(line, wrong, cell(wrong));
+    return texts.not_a_number(line, wrong[0], cells[wrong[1]]!);
   }
-  const wrong_account = accounts.find((name) => cell(name) !== "" && !is_number(cell(name)));
+  const wrong_account = columns.accounts.find(([, at]) => cells[at] !== "" && !Number.isFinite(numbers[at]));
   if (wrong_account !== undefined) {
-    return texts.not_an_account(line, wrong_account, cell(wrong_account));
+    return texts.not_an_account(line, wrong_account[0], cells[wrong_account[1]]!);
   }
-  const number = (name: string): number => Number(cell(name));
-  for (const [name, least, most] of [["generation", 1, Number.MAX_SAFE_INTEGER], ["island", 0, island_max]] as const) {
-    if (!Number.isInteger(number(name)) || number(name) < least || number(name) > most) {
-      return texts.not_whole(line, name, cell(name), least, most);
+  const picked = <Name extends string>(places: readonly Place<Name>[]): {[name in Name]: number} => {
+    const made = {} as {[name in Name]: number};
+    for (const [name, at] of places) {
+      made[name] = numbers[at]!;
+    }
+    return made;
+  };
+  const statistics: Statistics = picked(columns.numbers);
+  for (const [name, least, most] of [["generation", 1, generation_max], ["island", 0, island_max]] as const) {
+    if (!Number.isInteger(statistics[name]) || statistics[name] < least || statistics[name] > most) {
+      return texts.not_whole(line, name, String(statistics[name]), least, most);
     }
   }
-  const parts_of = (gene: string, parts: readonly string[]): {[part: string]: number} =>
-    Object.fromEntries(parts.map((part) => [part, number(`${gene}_${part}`)]));
-  const has_account = (gene: string): boolean => account_parts.every((part) => is_number(cell(`${gene}_${part}`)));
-  return {
-    generation: number("generation"),
-    island: number("island"),
-    ...Object.fromEntries(number_columns.map((name) => [name, number(name)])),
-    genes: gene_names.map(
-      (gene) =>
-        ({...parts_of(gene, gene_parts), ...(has_account(gene) ? {account: parts_of(gene, account_parts)} : {})})),
-  };
+  statistics.genes = columns.genes.map(({parts, account}) => {
+    const has_account = account !== null && account.every(([, at]) => Number.isFinite(numbers[at]));
+    return {...picked(parts), ...(has_account ? {account: picked(account)} : {})};
+  });
+  return statistics;
 }
 
 /** Names the runs by the columns in which they differ. The seed and the cell are left out if the others suffice: a cell

@@ -1,5 +1,6 @@
-// Camera: which part of the island a pane shows. World coordinates are in px, the model's unit of length; screen coordinates in
-// CSS pixels from the upper left corner of the canvas. Both have +x to the right and +y down. All functions are pure.
+// Camera: which part of the island a pane shows. World coordinates are in px, the model's unit of length; screen
+// coordinates in CSS pixels from the upper left corner of the canvas. Both have +x to the right and +y down. All
+// functions are pure.
 import type {Camera} from "../core/messages";
 
 export interface Size {
@@ -138,7 +139,8 @@ export function minimap_place(canvas: Size, island: Size): MinimapPlace {
   return {screen: {left: canvas.width - width - margin, top: canvas.height - height - margin, width, height}, zoom};
 }
 
-/** The rectangle on the minimap that marks the visible part of the world, clipped at the walls, at least 6 pixels wide and high. */
+/** The rectangle on the minimap that marks the visible part of the world, clipped at the walls, at least 6 pixels wide
+ *  and high. */
 export function minimap_frame(place: MinimapPlace, camera: Camera, canvas: Size): Rectangle {
   const visible = visible_part(camera, canvas);
   const {screen, zoom} = place;

@@ -1,5 +1,5 @@
-// Colouring: the colour of each organism, by its health, its lineage or a gene. The colours are computed again only after a change
-// of the snapshot, of the population or of the look.
+// Colouring: the colour of each organism, by its health, its lineage or a gene. The colours are computed again only
+// after a change of the snapshot, of the population or of the look.
 import type {Drawing, Look, PopulationColumns} from "../core/messages";
 import {steps_per_px} from "../core/snapshot";
 import {Families, FamilyColours} from "./families";

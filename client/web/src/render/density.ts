@@ -77,7 +77,8 @@ export function count_organisms(
   }
 }
 
-/** Puts the densities of tiles together. All tiles have cells of the same size, except after a change of the level of detail. */
+/** Puts the densities of tiles together. All tiles have cells of the same size, except after a change of the level of
+ *  detail. */
 export function join_tiles(grid: DensityGrid, tiles: readonly TileDensity[], tile_px: number): void {
   let [left, top, right, bottom] = [Infinity, Infinity, -Infinity, -Infinity];
   let cells_max = 1;

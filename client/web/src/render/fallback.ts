@@ -1,5 +1,5 @@
-// Fallback: draws a scene with Canvas2D, for browsers without WebGL2. Organisms are discs with an arc of health while there are few;
-// otherwise densities are drawn. Food and poison are squares, of which at most a share is drawn.
+// Fallback: draws a scene with Canvas2D, for browsers without WebGL2. Organisms are discs with an arc of health while
+// there are few; otherwise densities are drawn. Food and poison are squares, of which at most a share is drawn.
 import {steps_per_px} from "../core/snapshot";
 
 import {type Size, visible_part} from "./camera";

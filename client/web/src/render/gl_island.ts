@@ -1,4 +1,5 @@
-// GlIsland: draws a scene with WebGL2. Snapshots are uploaded once; between them only uniforms change, as the shader interpolates.
+// GlIsland: draws a scene with WebGL2. Snapshots are uploaded once; between them only uniforms change, as the shader
+// interpolates.
 import {steps_per_px} from "../core/snapshot";
 
 import {zoom_min} from "./camera";
@@ -192,7 +193,8 @@ export class GlIsland implements Painter {
       {moving: true, blend: scene.blend});
   }
 
-  /** Boxes have no ids: they are interpolated if both snapshots contain the same number of them, and each is of the same size. */
+  /** Boxes have no ids: they are interpolated if both snapshots contain the same number of them, and each is of the
+   *  same size. */
   #fill_boxes(filled: Filled, key: string, boxes: KeptBoxes, before: KeptBoxes|null): void {
     if (!filled.is_stale(key)) {
       return;
@@ -251,8 +253,8 @@ export class GlIsland implements Painter {
     draw(this.#tables.organism_dots, latest.organism_dots, 1, styles.organism_dot, typical_radius_px);
   }
 
-  /** Drivers in software reject points out of sight much more slowly than triangles: points are drawn only if the island is almost whole
-   *  in sight. */
+  /** Drivers in software reject points out of sight much more slowly than triangles: points are drawn only if the
+   *  island is almost whole in sight. */
   #is_island_in_sight({camera, place, at}: Scene): boolean {
     const {width_px, height_px} = at.latest.info!;
     return camera.zoom <= 2.5 * zoom_min(place, {width: width_px, height: height_px});

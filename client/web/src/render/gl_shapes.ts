@@ -13,7 +13,8 @@ import {
 
 const row_texels = 1024;
 
-/** An array of integers in graphics memory, as a texture. Only rows that have changed are uploaded. The texture grows geometrically. */
+/** An array of integers in graphics memory, as a texture. Only rows that have changed are uploaded. The texture grows
+ *  geometrically. */
 export class Table {
   readonly #texture: WebGLTexture;
   #data = new Int32Array(0);
@@ -222,8 +223,8 @@ export class GlShapes {
       gl, glyph_vertex_shader, glyph_fragment_shader, ["pixel_size", "glyphs", "cell", "atlas", "tint", "is_halo"]);
   }
 
-  /** Draws into a rectangle of the canvas: all coordinates count from its upper left corner, in device pixels, and nothing
-   *  is drawn outside. `place` is in CSS pixels. */
+  /** Draws into a rectangle of the canvas: all coordinates count from its upper left corner, in device pixels, and
+   *  nothing is drawn outside. `place` is in CSS pixels. */
   begin({left, top, width, height, ratio}: Place): void {
     const gl = this.gl;
     this.#ratio = ratio;

@@ -1,4 +1,5 @@
-// Glyphs: the characters of labels as an atlas, drawn at the size of device pixels, so that text is sharp at any pixel ratio.
+// Glyphs: the characters of labels as an atlas, drawn at the size of device pixels, so that text is sharp at any pixel
+// ratio.
 
 const characters = "#0123456789 ";
 const font_pixels = 13;

@@ -1,13 +1,13 @@
-// Interpolator: the latest two snapshots of an island, and positions interpolated between them. The rules are those of evoview
-// (client/core/snapshot_interpolator.h), so both show an organism at the same place.
+// Interpolator: the latest two snapshots of an island, and positions interpolated between them. The rules are those of
+// evoview (client/core/snapshot_interpolator.h), so both show an organism at the same place.
 //
-// The drawn state is one snapshot behind: organisms move from their position in the previous snapshot to their position in the
-// latest one. Positions are never extrapolated. The two kept snapshots are copies, whose memory is used again.
+// The drawn state is one snapshot behind: organisms move from their position in the previous snapshot to their position
+// in the latest one. Positions are never extrapolated. The two kept snapshots are copies, whose memory is used again.
 import type {Boxes, CoarseTile, Dots, Items, Snapshot, SnapshotInfo} from "../core/snapshot";
 import {steps_per_px} from "../core/snapshot";
 
-/** Two snapshots are interpolated only if they are at most this far apart in simulated time: over longer times the real paths are
- *  not straight lines. At 30 snapshots per second, 2 s between snapshots is a speed of 60 times real time. */
+/** Two snapshots are interpolated only if they are at most this far apart in simulated time: over longer times the real
+ *  paths are not straight lines. At 30 snapshots per second, 2 s between snapshots is a speed of 60 times real time. */
 export const blended_s_max = 2;
 /** The interpolation takes as long as the interval between the arrivals of the two snapshots, but at most this long. */
 export const glide_ms_max = 250;
@@ -184,8 +184,8 @@ export class Interpolator {
     return this.latest.info !== null;
   }
 
-  /** Adds a snapshot. It is not interpolated if it belongs to another run or generation than the one before, or to an earlier tick.
-   *  A snapshot of the same tick, with another region or level of detail, replaces the latest. */
+  /** Adds a snapshot. It is not interpolated if it belongs to another run or generation than the one before, or to an
+   *  earlier tick. A snapshot of the same tick, with another region or level of detail, replaces the latest. */
   add(snapshot: Snapshot, now_ms: number): void {
     const last = this.latest.info;
     const is_next =
@@ -210,8 +210,8 @@ export class Interpolator {
     this.#spare = new KeptSnapshot();
   }
 
-  /** Returns the progress of the interpolation: 0 draws the positions in `previous`, 1 those in `latest`. Returns 1 if the latest
-   *  snapshot is not interpolated, and while the world does not run. */
+  /** Returns the progress of the interpolation: 0 draws the positions in `previous`, 1 those in `latest`. Returns 1 if
+   *  the latest snapshot is not interpolated, and while the world does not run. */
   blend_at(now_ms: number): number {
     if (this.previous === null || this.#glide_ms <= 0 || this.latest.info?.state !== "RUN_STATE_RUNNING") {
       return 1;

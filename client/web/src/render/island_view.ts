@@ -1,35 +1,19 @@
-// IslandView: one island in a rectangle of the canvas: its camera, its scene for a painter, and what is at a point of it.
+// IslandView: one island in a rectangle of the canvas: its camera, its scene for a painter, and what is at a point of
+// it.
 import type {Camera, Drawing, Look, PopulationColumns, Tool} from "../core/messages";
-import {type Snapshot, steps_per_px} from "../core/snapshot";
-import {
-  clamped,
-  fitted,
-  is_whole_island_visible,
-  minimap_frame,
-  minimap_place,
-  type Place,
-  to_world,
-  visible_part
-} from "./camera";
+import {type Snapshot, type SnapshotInfo, steps_per_px} from "../core/snapshot";
+import {clamped, fitted, type Place, type Point, visible_part} from "./camera";
 import {Colouring} from "./colouring";
-import {count_organisms, count_overview, density_scale, DensityGrid, join_tiles} from "./density";
-import type {KeptSnapshot} from "./interpolator";
+import {count_organisms, density_scale, DensityGrid, join_tiles} from "./density";
+import {Description} from "./description";
 import {colours_of, default_look, island_colours, styles_of} from "./look";
 import {dots_radius_pixels, shows_details, too_many_for_dots, too_small_to_see, typical_radius_px} from "./marks";
-import {circle_at} from "./picking";
+import {MinimapGrid} from "./minimap";
+import {organism_at, picked_at, type Picked} from "./picking";
 import type {Painter, Scene} from "./scene";
 import {labels_of} from "./scene_labels";
 import {StreamedIsland} from "./streamed_island";
 import {StreamedRegion, type WantedView} from "./streamed_region";
-
-export interface Picked {
-  organism: number|null; // ids
-  food: number|null;
-  poison: number|null;
-  x_px: number; // the point of the island
-  y_px: number;
-  generation: number;
-}
 
 /** What the page sets. */
 export interface ViewSettings {
@@ -39,7 +23,7 @@ export interface ViewSettings {
   selected: number|null; // ids
   hovered: number|null; // the organism that a panel points at
   follows: boolean; // the camera keeps the selected organism in the middle
-  pointer: {x: number; y: number}|null; // CSS pixels in the place
+  pointer: Point|null; // CSS pixels in the place
   tool: Tool;
   population: PopulationColumns|null;
 }
@@ -67,13 +51,11 @@ export class IslandView {
   readonly #region = new StreamedRegion();
   readonly #colouring = new Colouring();
   readonly #density = new DensityGrid();
-  readonly #overview = new DensityGrid();
-  #overview_version = 0;
+  readonly #minimap = new MinimapGrid();
+  readonly #description = new Description();
   #is_dirty = true;
   #drawn_blend = 1;
   #drawn_camera: Camera|null = null;
-  #drawn: Drawing|null = null;
-  #drawn_key = "";
 
   /** painter: null while the graphics context is lost. */
   constructor(settings: ViewSettings, public painter: Painter|null) {
@@ -124,11 +106,12 @@ export class IslandView {
     }
     const scene = this.#scene(camera, blend, painter);
     painter.draw(scene);
-    this.#describe(scene, painter);
+    const by_lineage = this.settings.look.colour_by === "lineage" ? this.#current_population() : null;
+    this.#description.update(scene, this.#what_is_pointed_at(scene), painter.kind, this.#colouring, by_lineage);
   }
 
-  /** The camera of the last frame; differs from the one that was set while it follows an organism. Null before the first
-   *  snapshot. */
+  /** The camera of the last frame; differs from the one that was set while it follows an organism. Null before the
+   *  first snapshot. */
   camera(): Camera|null {
     const {size} = this.island, {camera, place} = this.settings;
     return size === null               ? null :
@@ -136,38 +119,15 @@ export class IslandView {
                                          clamped(camera, place, size);
   }
 
-  /** Returns what is drawn at a point: the organism or item whose centre is within `radius` CSS pixels, or whose body
-   *  contains the point. Null: the point is not on the island. */
+  /** What is drawn at a point; see picked_at(). */
   pick(x: number, y: number, radius: number): Picked|null {
     const camera = this.#drawn_camera;
-    const {info, id, food, poison} = this.island.at.latest;
-    if (camera === null || info === null) {
-      return null;
-    }
-    const at = to_world(camera, this.settings.place, {x, y});
-    if (at.x < 0 || at.y < 0 || at.x > info.width_px || at.y > info.height_px) {
-      return null;
-    }
-    const organism = this.#organism_at(camera, x, y, radius);
-    const item_at = (items: typeof food): number|null => {
-      const found = circle_at(
-        at.x, at.y, items.whole, (i) => items.x[i]! / steps_per_px, (i) => items.y[i]! / steps_per_px,
-        () => info.item_radius_px, 1 / camera.zoom, radius);
-      return found < 0 ? null : items.id[found]!;
-    };
-    return {
-      organism: organism < 0 ? null : id[organism]!,
-      food: item_at(food),
-      poison: item_at(poison),
-      x_px: at.x,
-      y_px: at.y,
-      generation: info.generation,
-    };
+    return camera && picked_at({x, y}, radius, camera, this.settings.place, this.island.at, this.#drawn_blend);
   }
 
   /** What was drawn last; another object only after a change. Null before the first snapshot. */
   drawing(): Drawing|null {
-    return this.#drawn;
+    return this.#description.drawing;
   }
 
   /** The View to request now (SetView), if the island is streamed in part; null if the one returned last is still
@@ -210,14 +170,6 @@ export class IslandView {
     }
   }
 
-  #organism_at(camera: Camera, x: number, y: number, radius: number): number {
-    const {at} = this.island, place = to_world(camera, this.settings.place, {x, y});
-    return circle_at(
-      place.x, place.y, at.latest.count, (i) => at.x_at(i, this.#drawn_blend) / steps_per_px,
-      (i) => at.y_at(i, this.#drawn_blend) / steps_per_px, (i) => at.latest.radius[i]! / steps_per_px, 1 / camera.zoom,
-      radius);
-  }
-
   #wants_density(camera: Camera): boolean {
     const {look, place} = this.settings, {latest} = this.island.at;
     const count = this.island.organism_count;
@@ -252,9 +204,8 @@ export class IslandView {
       organism_colours: this.#colouring.colours,
       health_max,
       selected: latest.index_of(selected),
-      pointed_at: pointer !== null && tool === "select" ?
-        this.#organism_at(camera, pointer.x, pointer.y, hover_radius) :
-        latest.index_of(hovered),
+      pointed_at: pointer !== null && tool === "select" ? organism_at(pointer, hover_radius, camera, place, at, blend) :
+                                                          latest.index_of(hovered),
       population: population !== null && shows_details(camera) ? population : null,
       trails: look.trails && place.has_details && shows_details(camera) ? trails : null,
       flashes: look.flashes ? flashes.all : [],
@@ -268,13 +219,14 @@ export class IslandView {
     if (latest.info !== null) {
       this.#choose_detail(scene);
       scene.labels = scene.shows !== "density" && place.has_details ? labels_of(scene, painter) : [];
-      scene.minimap = this.#minimap(camera);
-      scene.preview = this.#preview(camera, latest);
+      scene.minimap = look.minimap ? this.#minimap.of(this.island, camera, place) : null;
+      scene.preview = preview_of(pointer, tool, camera, latest.info);
     }
     return scene;
   }
 
-  /** After a change of the level of detail, densities are drawn until the first snapshot with the new detail arrives. */
+  /** After a change of the level of detail, densities are drawn until the first snapshot with the new detail arrives.
+   *  */
   #choose_detail(scene: Scene): void {
     const {at, camera, place, look, blend} = scene, {latest} = at, info = latest.info!;
     if (latest.densities.length > 0) {
@@ -289,83 +241,20 @@ export class IslandView {
     scene.density_scale = scene.shows === "density" ? density_scale(look.palette, this.#density) : null;
   }
 
-  #minimap(camera: Camera): Scene["minimap"] {
-    const {look, place} = this.settings, island = this.island.size!;
-    if (!look.minimap || is_whole_island_visible(camera, place, island)) {
-      return null;
-    }
-    const {whole, whole_version, version: snapshot_version} = this.island;
-    const version = whole === null ? snapshot_version : -1 - whole_version;
-    if (this.#overview_version !== version) {
-      this.#overview_version = version;
-      const from = whole ?? this.island.at.latest;
-      count_overview(this.#overview, from, island, from.info!.tile_px);
-    }
-    const map = minimap_place(place, island);
-    return {
-      place: map,
-      frame: minimap_frame(map, camera, place),
-      grid: this.#overview,
-      scale: density_scale("viridis", this.#overview),
-      version: this.#overview_version,
-    };
-  }
-
-  /** Of what a click would place. */
-  #preview(camera: Camera, {info}: KeptSnapshot): Scene["preview"] {
-    const {pointer, tool} = this.settings;
-    if (pointer === null || (tool !== "food" && tool !== "poison" && tool !== "organism")) {
-      return null;
-    }
-    const radius_px = tool === "organism" ? typical_radius_px : info!.item_radius_px;
-    const colour = tool === "organism" ? island_colours.classic.body : island_colours.classic[tool];
-    return {...pointer, radius: Math.max(radius_px * camera.zoom, 3), colour};
-  }
-
   #what_is_pointed_at(scene: Scene): Drawing["pointed_at"] {
-    const {pointer, tool} = this.settings;
-    if (pointer === null) {
-      return null;
-    }
-    if (tool === "select") {
-      return {organism: scene.pointed_at < 0 ? null : scene.at.latest.id[scene.pointed_at]!, food: null, poison: null};
-    }
-    const picked = this.pick(pointer.x, pointer.y, hover_radius);
-    return picked === null ? null : {organism: picked.organism, food: picked.food, poison: picked.poison};
+    const {pointer, tool} = this.settings, {id} = scene.at.latest;
+    return pointer === null ? null :
+      tool === "select" ? {organism: scene.pointed_at < 0 ? null : id[scene.pointed_at]!, food: null, poison: null} :
+                          this.pick(pointer.x, pointer.y, hover_radius);
   }
+}
 
-  /** Keeps a description of the frame for legends and hints. */
-  #describe(scene: Scene, painter: Painter): void {
-    const {at, density_scale: scale} = scene, {look} = this.settings, {health_max} = this.island;
-    const pointed_at = this.#what_is_pointed_at(scene);
-    const by_lineage = look.colour_by === "lineage" ? this.#current_population() : null;
-    const key = [
-      scene.shows,
-      scale?.high,
-      this.#density.cell_px,
-      health_max,
-      at.latest.has_headings,
-      look.colour_by,
-      this.#colouring.legend_key,
-      by_lineage === null,
-      pointed_at?.organism,
-      pointed_at?.food,
-      pointed_at?.poison,
-      pointed_at === null,
-    ].join();
-    if (key === this.#drawn_key) {
-      return;
-    }
-    this.#drawn_key = key;
-    this.#drawn = {
-      renderer: painter.kind,
-      shows: scene.shows,
-      density: scale === null ? null : {cell_px: this.#density.cell_px, most: scale.high},
-      health_max,
-      gene_range: this.#colouring.gene_range,
-      headings: at.latest.has_headings,
-      pointed_at,
-      ...this.#colouring.lineages(by_lineage),
-    };
+/** Of what a click would place. */
+function preview_of(pointer: Point|null, tool: Tool, camera: Camera, {item_radius_px}: SnapshotInfo): Scene["preview"] {
+  if (pointer === null || (tool !== "food" && tool !== "poison" && tool !== "organism")) {
+    return null;
   }
+  const radius_px = tool === "organism" ? typical_radius_px : item_radius_px;
+  const colour = tool === "organism" ? island_colours.classic.body : island_colours.classic[tool];
+  return {...pointer, radius: Math.max(radius_px * camera.zoom, 3), colour};
 }

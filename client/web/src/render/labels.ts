@@ -31,8 +31,8 @@ export function healthiest(snapshot: KeptSnapshot, count: number): number[] {
   return best;
 }
 
-/** Places each label above its organism, or below it if it would overlap a wall or an earlier label there. If it overlaps one at both
- *  places, it is above. `walls`: the part of the screen inside the walls. */
+/** Places each label above its organism, or below it if it would overlap a wall or an earlier label there. If it
+ *  overlaps one at both places, it is above. `walls`: the part of the screen inside the walls. */
 export function place_labels(labels: Label[], height: number, walls: Rectangle): void {
   const cell = labels.reduce((most, {width}) => Math.max(most, width), height);
   const cells = new Map<number, Label[]>(); // by the cell of the upper left corner; no label is wider than a cell

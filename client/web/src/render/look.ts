@@ -1,5 +1,5 @@
-// Look: the colours and styles of the island in each skin and background, and the colour scales. The same values as in evoview
-// (client/viewer/drawing/palette.cpp, client/viewer/island/styles.cpp); a test compares them.
+// Look: the colours and styles of the island in each skin and background, and the colour scales. The same values as in
+// evoview (client/viewer/drawing/palette.cpp, client/viewer/island/styles.cpp); a test compares them.
 import type {Look} from "../core/messages";
 
 /** Red, green, blue and alpha, 0 to 255. */
@@ -302,8 +302,9 @@ export function default_look(skin: Look["skin"], background: Look["background"],
 
 // ---- colour scales ---------------------------------------------------------------------------------------------
 
-/** Colour ramps for numbers; lightness rises with the number. Source: viridis and cividis: every 15th of the 256 colours of
- *  matplotlib. Viridis: S. van der Walt and N. Smith, 2015. Cividis: Nuñez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239. */
+/** Colour ramps for numbers; lightness rises with the number. Source: viridis and cividis: every 15th of the 256
+ *  colours of matplotlib. Viridis: S. van der Walt and N. Smith, 2015. Cividis: Nuñez, Anderton & Renslow 2018,
+ *  doi:10.1371/journal.pone.0199239. */
 export const ramps: {readonly[name in Look["palette"]]: readonly(readonly[number, number, number])[]} = {
   violet: [[70, 38, 150], [112, 84, 222], [160, 138, 250], [208, 194, 255]],
   viridis: [

@@ -8,8 +8,8 @@ import {Rectangle, Size, visible_part} from "./camera";
 export const typical_radius_px = 10;
 /** While organisms are too small to see, at most about this many dots of food are drawn, and of poison. */
 export const item_dots_max = 10_000;
-/** Trails and flashes are shown if a snapshot contains fewer organisms than this. On an island that is sent whole, those around the
- *  visible part count. */
+/** Trails and flashes are shown if a snapshot contains fewer organisms than this. On an island that is sent whole,
+ *  those around the visible part count. */
 export const traced_max = 5_000;
 /** The greatest number of visible organisms that are streamed and drawn as moving dots. */
 export const dots_max = 30_000;
@@ -61,8 +61,8 @@ export function health_scale_max(health: Int32Array, count: number): number {
 const float_bits = new Float32Array(2);
 const integer_bits = new Uint32Array(float_bits.buffer);
 
-/** Whether an item is kept if only `share` of them is drawn. This depends only on its place, so that the choice stays the same while
- *  others appear and disappear. */
+/** Whether an item is kept if only `share` of them is drawn. This depends only on its place, so that the choice stays
+ *  the same while others appear and disappear. */
 export function is_kept(x_px: number, y_px: number, share: number): boolean {
   if (share >= 1) {
     return true;
@@ -81,8 +81,8 @@ export function may_touch(rectangle: Rectangle, x: number, y: number, radius: nu
     y + radius >= rectangle.top && y - radius <= rectangle.top + rectangle.height;
 }
 
-/** Whether the health numbers of all visible organisms are readable: organisms must be large enough, and few enough that the numbers
- *  do not cover the island. */
+/** Whether the health numbers of all visible organisms are readable: organisms must be large enough, and few enough
+ *  that the numbers do not cover the island. */
 export function labels_are_readable(
   camera: Camera, canvas: Size, visible_count: number, label_zoom_min: number, label_height: number): boolean {
   const covered_max = 0.4;

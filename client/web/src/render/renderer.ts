@@ -1,7 +1,8 @@
-// Renderer: draws one pane: one island, or all islands of a world as tiles, with WebGL2, or with Canvas2D where WebGL2 is missing.
+// Renderer: draws one pane: one island, or all islands of a world as tiles, with WebGL2, or with Canvas2D where WebGL2
+// is missing.
 //
-// The worker owns it, calls add() after each decoded snapshot and draw() from requestAnimationFrame while needs_frame() is
-// true, and acknowledges a snapshot after the draw() that follows it.
+// The worker owns it, calls add() after each decoded snapshot and draw() from requestAnimationFrame while needs_frame()
+// is true, and acknowledges a snapshot after the draw() that follows it.
 import type {Look} from "../core/messages";
 import type {Snapshot, SnapshotInfo} from "../core/snapshot";
 import {pane_frame, type Place, type Size} from "./camera";

@@ -1,4 +1,5 @@
-// Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland (WebGL2) or Fallback (Canvas2D) draws it.
+// Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland (WebGL2) or Fallback
+// (Canvas2D) draws it.
 import type {Camera, Look, PopulationColumns} from "../core/messages";
 import type {MinimapPlace, Place, Rectangle, Size} from "./camera";
 import type {DensityGrid} from "./density";

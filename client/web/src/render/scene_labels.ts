@@ -1,5 +1,5 @@
-// Scene labels: the labels of a scene: the health of the visible organisms if there is room; otherwise of the healthiest, the
-// selected and the pointed one.
+// Scene labels: the labels of a scene: the health of the visible organisms if there is room; otherwise of the
+// healthiest, the selected and the pointed one.
 import {steps_per_px} from "../core/snapshot";
 
 import {visible_part} from "./camera";

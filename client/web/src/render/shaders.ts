@@ -1,9 +1,11 @@
-// Shaders: draw circles, rectangles, lines and arrows, one triangle or point each. The text that evoview shares is in client/shaders.
+// Shaders: draw circles, rectangles, lines and arrows, one triangle or point each. The text that evoview shares is in
+// client/shaders.
 //
 // The vertex shader reads the shape with index gl_VertexID / 3 from a texture of integers (vertex pulling).
 //
-// Texels of a shape: (x, y, w, h), and for "paired" shapes also (previous x, previous y, headings, colour). Positions are in steps; the
-// shader subtracts the camera's centre from them as integers, which is exact, before it multiplies by the zoom.
+// Texels of a shape: (x, y, w, h), and for "paired" shapes also (previous x, previous y, headings, colour). Positions
+// are in steps; the shader subtracts the camera's centre from them as integers, which is exact, before it multiplies by
+// the zoom.
 import shape_frag from "../../../shaders/shape.frag.glsl";
 import shape_vert from "../../../shaders/shape.vert.glsl";
 import type {Form} from "./look";

@@ -1,4 +1,5 @@
-// StreamedIsland: the snapshots of one island, and what is derived from them when they arrive: trails, flashes, the scale of health.
+// StreamedIsland: the snapshots of one island, and what is derived from them when they arrive: trails, flashes, the
+// scale of health.
 //
 // add() copies what it needs: the decoder may reuse the columns of the snapshot.
 import type {Camera, Look} from "../core/messages";

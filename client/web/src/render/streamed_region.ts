@@ -1,5 +1,6 @@
-// StreamedRegion: the region and the level of detail in which a large island is streamed. The region is larger than the visible part, so
-// that a small pan stays inside it. It changes at most once per 200 ms. As in evoview (island_view.cpp).
+// StreamedRegion: the region and the level of detail in which a large island is streamed. The region is larger than the
+// visible part, so that a small pan stays inside it. It changes at most once per 200 ms. As in evoview
+// (island_view.cpp).
 import type {Camera} from "../core/messages";
 import {contains, Rectangle, Size, visible_part} from "./camera";
 

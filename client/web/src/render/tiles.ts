@@ -1,4 +1,5 @@
-// Tiles: the places of the islands of a world in one canvas, row by row. The page lays out its controls by the same function.
+// Tiles: the places of the islands of a world in one canvas, row by row. The page lays out its controls by the same
+// function.
 import type {Frame, Place, Rectangle, Size} from "./camera";
 
 export const gap_pixels = 6; // between two tiles, and around all

@@ -1,5 +1,5 @@
-// Trails: the paths of all organisms during the last simulated seconds. Flashes: meals and deaths, found by comparing successive
-// snapshots. Both as in evoview (client/viewer/island/marks.h, flashes.cpp). Their memory is used again.
+// Trails: the paths of all organisms during the last simulated seconds. Flashes: meals and deaths, found by comparing
+// successive snapshots. Both as in evoview (client/viewer/island/marks.h, flashes.cpp). Their memory is used again.
 import type {Items, Snapshot, SnapshotInfo} from "../core/snapshot";
 import {steps_per_px} from "../core/snapshot";
 import {contains, Rectangle} from "./camera";
@@ -12,8 +12,8 @@ const in_region = {
   y: new Int32Array(traced_max)
 };
 
-/** Returns the organisms that have trails; null if they are too many. On a large island that is sent whole, they are those in `region`,
- *  which a View would contain. The result is valid until the next call. */
+/** Returns the organisms that have trails; null if they are too many. On a large island that is sent whole, they are
+ *  those in `region`, which a View would contain. The result is valid until the next call. */
 export function traced({info, organisms}: Snapshot, region: Rectangle|null): Items|null {
   const {id, x, y} = organisms;
   if (id.length < traced_max) {

@@ -17,7 +17,7 @@ export const app_texts = {
   close: "Close",
   lost: (message: string) => `${message || "Connecting"}. Trying again …`,
   has_shut_down: "The server has shut down. Trying again …",
-  shuts_down: "The server is shutting down.",
+  shuts_down: "The server is about to stop.",
   updated: "The server was updated: reload the page.",
   reload: "Reload",
   other_token: (session: string) => `The link contains another token. You are connected as ${session}.`,

@@ -1,4 +1,5 @@
 // Texts of the panel "Family tree".
+import {choice_text, counted} from "./breeding";
 import {three_digits, with_separators} from "./numbers";
 
 interface Named {
@@ -13,10 +14,6 @@ interface Described extends Named {
   fitness: number|null;
   child_count: number;
   kept_count: number;
-}
-
-function counted(count: number, one: string, many: string): string {
-  return `${with_separators(count)} ${count === 1 ? one : many}`;
 }
 
 function of_island(island: number): string {
@@ -134,7 +131,7 @@ export const family_texts = {
     `Mutated genes: ${
       changes.map(({gene, before, after, how}) => `${gene} ${before} → ${after} (${how})`).join("; ")}` +
       (more > 0 ? `; and ${with_separators(more)} more.` : "."),
-  order_mutated: (method: string): string => ` The order of the genes mutated (${method.replace(/_/g, " ")}).`,
+  order_mutated: (method: string): string => ` The order of the genes mutated (${choice_text(method)}).`,
   loading_changes: "Loading the changed genes …",
   changes_unknown: (problem: string): string => `The changed genes are unknown: ${problem}.`,
 
@@ -150,20 +147,14 @@ export const family_texts = {
     `${first_parents ? " along first parents" : ""} since generation ${with_separators(since)}.`,
   mark_two: "Mark two organisms (M, or Shift and click) to find their common ancestors.",
   mark_another: (one: Named): string => `A: ${name(one)}. Mark another organism to find their common ancestors.`,
-  two_descend_from: (one: Named, other: Named, ancestors: readonly Named[]): string => {
-    const self = [one, other].find(
-      (end) => ancestors.some(
-        (ancestor) => ancestor.generation === end.generation && ancestor.island === end.island &&
-          ancestor.organism === end.organism));
-    return self ?
-      `A: ${name(one)}. B: ${name(other)}. ${self === one ? "A is an ancestor of B." : "B is an ancestor of A."}` :
-      `A: ${name(one)}. B: ${name(other)}. Most recent common ${
-        ancestors.length === 1 ?
-          "ancestor" :
-          "ancestors"} of both: ${names(ancestors)} of generation ${with_separators(ancestors[0]!.generation)}.`;
-  },
-  two_have_none: (one: Named, other: Named, since: number): string =>
-    `A: ${name(one)}. B: ${name(other)}. They have no common ancestor since generation ${with_separators(since)}.`,
+  marked: (one: Named, other: Named): string => `A: ${name(one)}. B: ${name(other)}. `,
+  two_descend_from: (ancestors: readonly Named[]): string =>
+    `Most recent common ${ancestors.length === 1 ? "ancestor" : "ancestors"} of both: ${
+      names(ancestors)} of generation ` +
+    `${with_separators(ancestors[0]!.generation)}.`,
+  one_descends_from_other: (ancestor: string, descendant: string): string =>
+    `${ancestor} is an ancestor of ${descendant}.`,
+  two_have_none: (since: number): string => `They have no common ancestor since generation ${with_separators(since)}.`,
 
   legend: "Colours of the organisms",
   legend_lineages: (generation: number): string => `Lineages since generation ${with_separators(generation)}:`,

@@ -1,8 +1,32 @@
-// Texts of the time line.
+// What people read about the past of a world: the time line, its buttons, links to moments.
 import {with_separators} from "./numbers";
 
 export const timeline_texts = {
-  generation: "generation",
-  generation_help: (first: number, last: number) =>
-    `Type a generation from ${with_separators(first)} to ${with_separators(last)}, and press Enter to show it.`,
+  name: "Time line",
+  slider: "Time line: generation",
+  generation: (generation: number) => `generation ${with_separators(generation)}`,
+  tick: (tick: number) => `tick ${with_separators(tick)}`,
+  tick_of: (tick: number, count: number) => `tick ${with_separators(tick)} of ${with_separators(count)}`,
+  last_tick: "the last tick",
+  going_to: (moment: string) => `going to ${moment} …`,
+  live: "live",
+  is_live: "The world is live.",
+  is_live_help: "The world is live; P replays its run.",
+  no_world: "No world is open.",
+  is_first: "This is the first generation.",
+  is_last: "This is the last generation.",
+  is_end: "This is the end of the replay.",
+  extinction: (generation: number) => `generation ${with_separators(generation)}: all organisms died before its end`,
+  further_marks: (count: number) => `and ${count} more`,
+};
+
+export const timeline_buttons = {
+  first: {label: "|<", name: "First tick", help: "Goes to the first tick."},
+  previous: {label: "<", name: "Previous generation", help: "Goes to the previous generation ([)."},
+  play: {label: "Play", help: "Plays or pauses the replay (Space)."},
+  pause: {label: "Pause"},
+  next: {label: ">", name: "Next generation", help: "Goes to the next generation (])."},
+  last: {label: ">|", name: "Last tick", help: "Goes to the last tick."},
+  live: {label: "Live", help: "Returns to the live world (P)."},
+  copy: {label: "Copy link", help: "Copies a link that shows this moment in a browser (Ctrl+C)."},
 };

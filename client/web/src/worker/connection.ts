@@ -1,9 +1,9 @@
 // Connection: the socket of the worker, and the protocol core behind it.
 //
-// Reconnecting   While the connection is lost, it tries again after 0.25 s, then after twice as long, up to 5 s. The core then
-//                subscribes again and repeats the unanswered requests.
-// Silence        A server that sends nothing for silence_ms gets a query, which a living server answers. A server that sends
-//                nothing for silence_max_ms has disappeared without closing the connection.
+// Reconnecting   While the connection is lost, it tries again after 0.25 s, then after twice as long, up to 5 s. The
+//                core then subscribes again and repeats the unanswered requests.
+// Silence        A server that sends nothing for silence_ms gets a query, which a living server answers. A server that
+//                sends nothing for silence_max_ms has disappeared without closing the connection.
 import {ClientCore, type CoreEvent} from "../core/client_core";
 import type {ConnectionState} from "../core/messages";
 import {worker_texts} from "../texts/worker";

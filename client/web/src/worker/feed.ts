@@ -1,7 +1,8 @@
-// Feed: the subscriptions to snapshots of one pane: of one island, or of all islands of the world, which it shows as tiles.
+// Feed: the subscriptions to snapshots of one pane: of one island, or of all islands of the world, which it shows as
+// tiles.
 //
-// Views   Larger islands are streamed in tiles of the visible region, smaller ones whole. While one island is streamed in part,
-//         a second subscription sends densities of the whole island once a second, for the minimap.
+// Views   Larger islands are streamed in tiles of the visible region, smaller ones whole. While one island is streamed
+//         in part, a second subscription sends densities of the whole island once a second, for the minimap.
 import type {Subscription} from "../core/client_core";
 import type {Detail, View} from "../core/protocol";
 import type {Snapshot} from "../core/snapshot";

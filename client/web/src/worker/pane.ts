@@ -1,4 +1,5 @@
-// WorkerPane: one pane of the page in the worker: what it watches, what its canvas shows, and what it reports to the page.
+// WorkerPane: one pane of the page in the worker: what it watches, what its canvas shows, and what it reports to the
+// page.
 import type {Subscription} from "../core/client_core";
 import {type Camera, type FromWorker, type Look, none_left, type ToWorker} from "../core/messages";
 import type {Snapshot} from "../core/snapshot";
@@ -19,9 +20,8 @@ export class WorkerPane {
   readonly #post: (message: FromWorker) => void;
   #renderer: Renderer|null = null; // until the canvas has arrived
   // What the page has set before the canvas has arrived.
-  #size: [number, number, number]|null = null;
-  #camera: Camera|null = null;
-  #look: Look|null = null;
+  readonly #settings:
+    {size?: [width: number, height: number, pixel_ratio: number]; camera: Camera | null; look?: Look} = {camera: null};
   #undrawn: Snapshot[] = []; // added to the renderer, not acknowledged yet
   readonly #newest = new Map<number, Snapshot>(); // by island
   #follows = false;
@@ -135,8 +135,8 @@ export class WorkerPane {
         this.#take_canvas(message.canvas);
         break;
       case "resize":
-        this.#size = [message.width, message.height, message.pixel_ratio];
-        renderer?.resize(...this.#size);
+        this.#settings.size = [message.width, message.height, message.pixel_ratio];
+        renderer?.resize(...this.#settings.size);
         break;
       case "watch":
         this.#watch(message.world, message.island, message.rate_hz);
@@ -149,7 +149,7 @@ export class WorkerPane {
         this.#show_islands(message.islands);
         break;
       case "camera":
-        this.#camera = message.camera;
+        this.#settings.camera = message.camera;
         this.#reported.camera = JSON.stringify(message.camera);
         renderer?.change({camera: message.camera});
         break;
@@ -157,7 +157,7 @@ export class WorkerPane {
         renderer?.change({pointer: message.at, tool: message.tool});
         break;
       case "look":
-        this.#look = message.look;
+        this.#settings.look = message.look;
         renderer?.set_look(message.look);
         break;
       case "select":
@@ -184,14 +184,14 @@ export class WorkerPane {
   }
 
   #take_canvas(canvas: OffscreenCanvas): void {
-    const renderer = (this.#renderer = new Renderer(canvas));
-    if (this.#size) {
-      renderer.resize(...this.#size);
+    const renderer = (this.#renderer = new Renderer(canvas)), {size, camera, look} = this.#settings;
+    if (size) {
+      renderer.resize(...size);
     }
-    if (this.#look) {
-      renderer.set_look(this.#look);
+    if (look) {
+      renderer.set_look(look);
     }
-    renderer.change({camera: this.#camera});
+    renderer.change({camera});
     renderer.show_islands(this.feed.islands, this.feed.watched?.island ?? 0);
     for (const snapshot of this.#newest.values()) {
       renderer.add(snapshot, performance.now());

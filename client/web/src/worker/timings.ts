@@ -1,4 +1,5 @@
-// Timings: figures about the worker for tests and benchmarks. Times are those of the last timings_kept snapshots and frames.
+// Timings: figures about the worker for tests and benchmarks. Times are those of the last timings_kept snapshots and
+// frames.
 import type {Figures} from "../core/messages";
 
 const timings_kept = 200;
