@@ -1,5 +1,6 @@
 #include "client/core/history_csv.h"
 
+#include "proto/text/csv.h"
 #include "proto/text/number_text.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <sstream>
 
 namespace evod::core {
 
@@ -41,34 +43,6 @@ constexpr std::string_view gene_parts[] = {"_mean", "_deviation", "_min", "_max"
 constexpr std::string_view account_parts[] = {"_selection", "_transmission", "_migration", "_change"};
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-/// Returns the cells of a line. Removes the quotation marks that some programs write around cells.
-std::vector<std::string_view> split_csv_line(std::string_view line) {
-    std::vector<std::string_view> cells;
-    while (true) {
-        const std::size_t comma = line.find(',');
-        std::string_view cell = line.substr(0, comma);
-        if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') {
-            cell = cell.substr(1, cell.size() - 2);
-        }
-        cells.push_back(cell);
-        if (comma == std::string_view::npos) {
-            return cells;
-        }
-        line.remove_prefix(comma + 1);
-    }
-}
-
-/// Removes the first line from the text and returns it.
-std::string_view remove_first_line(std::string_view& text) {
-    const std::size_t end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (line.ends_with('\r')) {
-        line.remove_suffix(1);
-    }
-    return line;
-}
 
 Error misread(std::string what) {
     return {Error::Kind::Usage, std::move(what)};
@@ -113,7 +87,7 @@ std::vector<double> history_numbers(const evod::v1::GenerationStatistics& statis
 std::string history_heading(const std::vector<std::string>& gene_names) {
     std::string heading;
     for (const std::string& column : history_columns(gene_names)) {
-        heading += (heading.empty() ? "" : ",") + column;
+        heading += (heading.empty() ? "" : ",") + text::csv_cell(column);
     }
     return heading + "\n";
 }
@@ -128,10 +102,10 @@ std::string history_line(std::span<const double> numbers) {
 }
 
 Result<HistoryCsv> read_history_csv(std::string_view text) {
-    if (text.starts_with("\xef\xbb\xbf")) { // a byte order mark, which spreadsheet programs write
-        text.remove_prefix(3);
-    }
-    const std::vector<std::string_view> heading = split_csv_line(remove_first_line(text));
+    std::istringstream in{std::string{text}};
+    text::CsvReader lines{in};
+    lines.next();
+    const std::vector<std::string> heading(lines.cells().begin(), lines.cells().end());
     HistoryCsv read;
     for (const std::string_view name : heading) {
         const std::string gene{name.substr(0, name.size() - std::min(name.size(), gene_parts[0].size()))};
@@ -150,14 +124,14 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
         }
         places.push_back(static_cast<std::size_t>(found - heading.begin()));
     }
-    for (std::size_t number = 2; !text.empty(); ++number) {
-        const std::string_view line = remove_first_line(text);
-        if (line.empty()) {
+    while (lines.next()) {
+        const std::span<const std::string_view> cells = lines.cells();
+        if (cells.size() == 1 && cells[0].empty()) {
             continue;
         }
-        const std::vector<std::string_view> cells = split_csv_line(line);
+        const std::string line = "line " + std::to_string(lines.line());
         if (cells.size() != heading.size()) {
-            return misread("line " + std::to_string(number) + " has " + std::to_string(cells.size()) +
+            return misread(line + " has " + std::to_string(cells.size()) +
                            " cells, allowed: " + std::to_string(heading.size()) + ", as many as the heading");
         }
         std::vector<double>& row = read.rows.emplace_back();
@@ -170,18 +144,21 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
             double value = 0;
             const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
             if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) {
-                return misread("line " + std::to_string(number) + ", " + columns[i] + ": must be a number, not \"" +
+                return misread(line + ", " + columns[i] + ": must be a number, not \"" +
                                std::string{cell.substr(0, 40)} + "\"");
             }
             row.push_back(value);
         }
         for (std::size_t i = 0; i < 2; ++i) {
             if (row[i] != std::floor(row[i]) || row[i] < (i == 0 ? 1 : 0) || row[i] >= (i == 0 ? 1e15 : 65'536)) {
-                return misread("line " + std::to_string(number) + ", " + columns[i] + ": must be a whole number from " +
+                return misread(line + ", " + columns[i] + ": must be a whole number from " +
                                (i == 0 ? "1" : "0 to 65535") + ", not " +
                                text::number_text(row[i], text::Exponent::IfLong));
             }
         }
+    }
+    if (lines.has_open_quote()) {
+        return misread("line " + std::to_string(lines.line()) + ": a quotation mark is not closed");
     }
     return read;
 }

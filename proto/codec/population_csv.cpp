@@ -1,11 +1,14 @@
 #include "proto/codec/population_csv.h"
 
+#include "proto/text/csv.h"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 
 namespace evod::codec {
@@ -19,57 +22,54 @@ Damage wrong_line(std::uint64_t line, const std::string& allowed, std::string_vi
             allowed};
 }
 
-/// Parses the next field of a line and removes it from the line. Returns false if the field is not a T.
+/// Parses a cell. Returns false if it is not a T.
 template <class T>
-bool take(std::string_view& line, T& value) {
-    const std::string_view field = line.substr(0, line.find(','));
-    line.remove_prefix(std::min(line.size(), field.size() + 1));
-    const auto read = std::from_chars(field.data(), field.data() + field.size(), value);
-    return read.ec == std::errc{} && read.ptr == field.data() + field.size();
+bool parse(std::string_view cell, T& value) {
+    const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    return read.ec == std::errc{} && read.ptr == cell.data() + cell.size();
 }
 
-bool next_line(std::istream& in, std::string& line) {
-    if (!std::getline(in, line)) {
-        return false;
+/// The row as text, for a message about it.
+std::string joined(std::span<const std::string_view> cells) {
+    std::string text;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        text += (i == 0 ? "" : ",") + text::csv_cell(cells[i]);
     }
-    if (line.ends_with('\r')) {
-        line.pop_back();
-    }
-    return true;
+    return text;
 }
 
 } // namespace
 
 Result<Population> read_population(std::istream& in) {
-    std::string line;
+    text::CsvReader rows{in};
     Population population;
     std::vector<std::string>& names = population.gene_names;
-    bool good = next_line(in, line) && line.starts_with(population_heading) &&
-                (line.size() == population_heading.size() || line[population_heading.size()] == ',');
-    for (std::size_t begin = genes_at; good && begin <= line.size();) {
-        const std::size_t end = std::min(line.find(',', begin), line.size());
-        names.push_back(line.substr(begin, end - begin));
+    bool good = rows.next();
+    const std::string heading = joined(rows.cells());
+    good = good && heading.starts_with(population_heading) &&
+           (heading.size() == population_heading.size() || heading[population_heading.size()] == ',');
+    for (std::size_t i = 2; good && i < rows.cells().size(); ++i) {
+        names.emplace_back(rows.cells()[i]);
         good = !names.back().empty() && names.size() <= genes_max;
-        begin = end + 1;
     }
     if (!good) {
         return wrong_line(
             1, "the heading " + std::string{population_heading} + ", which the names of further genes may follow",
-            line);
+            heading);
     }
 
     std::vector<std::vector<float>>& islands = population.islands;
     std::vector<float> genes(names.size());
-    for (std::uint64_t number = 2; next_line(in, line); ++number) {
-        std::string_view rest = line;
+    while (rows.next()) {
+        const std::span<const std::string_view> cells = rows.cells();
         std::uint64_t island = 0, organism = 0;
-        good = take(rest, island) && take(rest, organism);
-        for (float& gene : genes) {
-            good = good && take(rest, gene);
+        good = cells.size() == genes.size() + 2 && parse(cells[0], island) && parse(cells[1], organism);
+        for (std::size_t i = 0; good && i < genes.size(); ++i) {
+            good = parse(cells[i + 2], genes[i]);
         }
-        if (!good || !rest.empty() ||
-            static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) != genes.size() + 1) {
-            return wrong_line(number, "an island, an organism and " + std::to_string(genes.size()) + " genes", line);
+        if (!good) {
+            return wrong_line(rows.line(), "an island, an organism and " + std::to_string(genes.size()) + " genes",
+                              joined(cells));
         }
         if (island == islands.size() && organism == 0) {
             islands.emplace_back();
@@ -77,12 +77,15 @@ Result<Population> read_population(std::istream& in) {
         const std::uint64_t last = islands.empty() ? 0 : islands.size() - 1;
         const std::uint64_t next = islands.empty() ? 0 : population.organism_count(last);
         if (islands.empty() || island != last || organism != next) {
-            return wrong_line(number,
+            return wrong_line(rows.line(),
                               "organism " + std::to_string(next) + " of island " + std::to_string(last) +
                                   ", or the next island",
-                              line);
+                              joined(cells));
         }
         islands.back().insert(islands.back().end(), genes.begin(), genes.end());
+    }
+    if (rows.has_open_quote()) {
+        return Damage{"line " + std::to_string(rows.line()) + ": a quotation mark is not closed"};
     }
     if (in.bad()) {
         return Damage{std::string{"cannot be read: "} + std::strerror(errno)};
@@ -96,7 +99,7 @@ Result<Population> read_population(std::istream& in) {
 std::string population_text(const Population& population) {
     std::string text{population_heading.substr(0, genes_at - 1)};
     for (const std::string& name : population.gene_names) {
-        text += "," + name;
+        text += "," + text::csv_cell(name);
     }
     text += "\n";
     const std::size_t gene_count = population.gene_names.size();

@@ -1,5 +1,6 @@
 #include "server/replay/table.h"
 
+#include "proto/text/csv.h"
 #include "server/base/assert.h"
 
 #include <boost/json/serialize.hpp>
@@ -12,17 +13,6 @@ namespace {
 
 std::string json_text(std::string_view text) {
     return boost::json::serialize(boost::json::string{text});
-}
-
-std::string csv_text(std::string_view text) {
-    if (text.find_first_of("\",\r\n") == std::string_view::npos) {
-        return std::string{text};
-    }
-    std::string quoted = "\"";
-    for (const char c : text) {
-        quoted.append(c == '"' ? 2 : 1, c);
-    }
-    return quoted + '"';
 }
 
 } // namespace
@@ -54,7 +44,7 @@ void Table::begin_field() {
 
 Table& Table::text(std::string_view value) {
     begin_field();
-    line_ += format_ == Format::Csv ? csv_text(value) : json_text(value);
+    line_ += format_ == Format::Csv ? text::csv_cell(value) : json_text(value);
     return *this;
 }
 

@@ -237,7 +237,7 @@ def refusal(status: commands_pb2.Status) -> Error:
     """Returns the error for a response whose status is not OK."""
     violations = (Violation(argument_of(v.field), _with_arguments(v.allowed), v.got) for v in status.violations)
     # The lines after the sentence are those that str() makes of the violations.
-    message = _with_arguments(printable(status.message.partition("\n")[0]))
+    message = _with_arguments(printable(status.message.partition("\n  ")[0]))
     kind: type[Error] = _OF_CODE.get(status.code, Error)
     if status.reason == commands_pb2.REASON_REQUEST_TOO_OLD:
         kind = AnswerExpired

@@ -443,7 +443,7 @@ class Controls(Case):
             self.assertEqual(self.changed("mutation_step"), 21)
             browser.driver.switch_to.window(first)
             self.wait_value("mutation_step", "21")
-            browser.wait_for_text("changed mutation_step to 21", ".notices")
+            browser.wait_for_text("set mutation_step to 21", ".notices")
             browser.type_into(self.field("mutation_step"), "22")
             browser.press("Apply")
             self.assertEqual(self.changed("mutation_step"), 22)
