@@ -388,6 +388,35 @@ class Controls(Case):
         browser.press("Undo")
         self.assertEqual(self.changed("mutation_chance"), 0.25)
 
+    def test_undo_reverses_changes_and_placings(self):
+        browser = self.browser
+        browser.take_part()
+        browser.press("Food")
+        left, top, width, height = browser.canvas()
+        browser.click_at(left + width / 4, top + height / 3)
+        placed = self.control.next_event("placed").placed
+        browser.wait("evod.app.world().undo.next_undo === 'placed 1 food'", "the placed food in the history")
+        browser.panel("Parameters")
+        self.wait_enabled("mutation_chance")
+        before = self.value_of(self.control, "mutation_chance")
+        browser.type_into(self.field("mutation_chance"), "0.25")
+        self.field("mutation_chance").send_keys(Keys.CONTROL, "z")  # the field undoes its own text
+        browser.type_into(self.field("mutation_chance"), "0.25")
+        browser.press("Apply")
+        self.assertEqual(self.changed("mutation_chance"), 0.25)
+        browser.wait("evod.app.world().undo.next_undo === 'Mutation chance'", "the change in the history")
+        browser.element("body").send_keys(Keys.CONTROL, "z")
+        self.assertEqual(self.changed("mutation_chance"), before)
+        browser.wait("evod.app.world().undo.next_undo === 'placed 1 food'", "the end of the first undo")
+        browser.press("Undo", ".tools")
+        self.assertEqual(self.control.next_event("removed").removed.food, placed.food)
+        browser.wait("evod.app.world().undo.next_redo === 'placed 1 food'", "the end of the second undo")
+        browser.element("body").send_keys(Keys.CONTROL, Keys.SHIFT, "z")
+        self.assertEqual(len(self.control.next_event("placed").placed.food), 1)
+        browser.wait("evod.app.world().undo.next_redo === 'Mutation chance'", "the end of the redo")
+        browser.element("body").send_keys(Keys.CONTROL, "y")
+        self.assertEqual(self.changed("mutation_chance"), 0.25)
+
     def test_the_run_bar_controls_the_world(self):
         browser = self.browser
         browser.take_part()

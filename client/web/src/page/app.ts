@@ -64,7 +64,7 @@ export class App implements KeyTarget {
     this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
     const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, panels.map((make) => make(this)), new Tools(() => this.panes.focused.pane.tool, this.notify),
+      this, server, panels.map((make) => make(this)), new Tools(this, () => this.panes.focused.pane.tool),
       [theme_button(), help, hide]);
     this.column.curve.append(this.#curve.element);
     this.element =

@@ -7,6 +7,7 @@ import {Dialog} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
+import {undo, undo_verb_of} from "../world/undo_command";
 import type {Column} from "./column";
 import type {PaneAreas} from "./pane_areas";
 import {toggle_replay} from "./run_bar";
@@ -120,6 +121,12 @@ export function listen_to_keys(app: KeyTarget): void {
   }, true);
   document.addEventListener("keydown", (event) => {
     by_pointer &&= event.key === " ";
+    const verb = event.defaultPrevented || document.querySelector("dialog[open]") ? null : undo_verb_of(event);
+    if (verb !== null) {
+      event.preventDefault();
+      void undo(app, verb);
+      return;
+    }
     if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey || keeps_key(event)) {
       return;
     }

@@ -70,7 +70,7 @@ export class Pane {
     this.element =
       h("div", {class: "pane"}, this.#canvas, this.#legend.element, this.#hint, this.#note, this.tiles.element,
         h("div", {class: "pane-focus"}));
-    this.#picker = new Picker(this.#world.pane, options.worker.post.bind(options.worker));
+    this.#picker = new Picker(this.#world.feed.pane, options.worker.post.bind(options.worker));
     this.#gestures = new Gestures(this.#canvas, this.#target());
     this.#canvas.addEventListener("pointerdown", () => options.on_focus?.());
     this.#canvas.addEventListener("focus", () => options.on_focus?.());
@@ -80,7 +80,7 @@ export class Pane {
       options.worker.on_message((message) => this.#take(message)), this.#world.changes.listen(() => this.#refresh()));
     if (typeof this.#canvas.transferControlToOffscreen === "function") {
       const canvas = this.#canvas.transferControlToOffscreen();
-      options.worker.post({kind: "pane", pane: this.#world.pane, canvas}, [canvas as unknown as Transferable]);
+      options.worker.post({kind: "pane", pane: this.#world.feed.pane, canvas}, [canvas as unknown as Transferable]);
     } else {
       this.#show_note(pane_texts.no_offscreen_canvas);
     }
@@ -90,7 +90,7 @@ export class Pane {
   close(): void {
     this.#gestures.close();
     this.#ends.forEach((end) => end());
-    this.#options.worker.post({kind: "close_pane", pane: this.#world.pane});
+    this.#options.worker.post({kind: "close_pane", pane: this.#world.feed.pane});
     this.element.remove();
   }
 
@@ -100,7 +100,7 @@ export class Pane {
     this.tiles.take(message);
     this.#picker.take(message);
     if (
-      message.kind === "camera" && message.pane === this.#world.pane && this.#world.selection.follow &&
+      message.kind === "camera" && message.pane === this.#world.feed.pane && this.#world.selection.follow &&
       !this.#gestures.is_panning) {
       this.view.followed(message.camera);
     }
@@ -153,7 +153,7 @@ export class Pane {
 
   #resized(size: Size, pixel_ratio: number): void {
     this.view.size = size;
-    this.#options.worker.post({kind: "resize", pane: this.#world.pane, ...size, pixel_ratio});
+    this.#options.worker.post({kind: "resize", pane: this.#world.feed.pane, ...size, pixel_ratio});
     this.#refresh();
   }
 
@@ -209,7 +209,7 @@ export class Pane {
     const key = `${at?.x} ${at?.y} ${tool}`;
     if (key !== this.#sent_pointer) {
       this.#sent_pointer = key;
-      this.#options.worker.post({kind: "pointer", pane: this.#world.pane, at, tool});
+      this.#options.worker.post({kind: "pointer", pane: this.#world.feed.pane, at, tool});
     }
   }
 

@@ -38,7 +38,7 @@ export class PaneView {
   /** Shows this part without moving a linked view. */
   set(camera: Camera|null): void {
     this.camera = camera;
-    this.#world.server.post({kind: "camera", pane: this.#world.pane, camera});
+    this.#world.server.post({kind: "camera", pane: this.#world.feed.pane, camera});
   }
 
   /** Shows the whole island. */

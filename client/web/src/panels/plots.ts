@@ -99,7 +99,7 @@ export class PlotsPanel implements Panel {
   // ---- data ----
 
   #follow(): void {
-    const world = this.#context.world(), run = `${world.pane} ${world.name} ${this.#run_id()}`;
+    const world = this.#context.world(), run = `${world.feed.pane} ${world.name} ${this.#run_id()}`;
     if (run !== this.#run) {
       this.#run = run;
       this.#drawn = "";

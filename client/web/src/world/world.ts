@@ -16,6 +16,7 @@ import {Past} from "./past";
 import {PopulationReader} from "./population";
 import {Selection} from "./selection";
 import type {KnownWorld, Server} from "./server";
+import {UndoHistory} from "./undo";
 
 const poll_ms = 250;
 
@@ -31,9 +32,10 @@ export class ViewedWorld {
   readonly history: WorldHistory; // of `name`
   readonly control: RunControl;
   readonly past: Past;
+  readonly undo: UndoHistory;
   readonly #end: (() => void)[] = [];
 
-  constructor(readonly server: Server, readonly pane: number) {
+  constructor(readonly server: Server, pane: number) {
     const {changes} = this, poll = (): void => this.#poll();
     this.feed = new SnapshotFeed(server, pane, changes);
     this.selection = new Selection(this.feed, changes, poll);
@@ -43,6 +45,7 @@ export class ViewedWorld {
     this.control = new RunControl(this.feed, changes);
     const live = {name: () => this.name, watch: (world: string) => this.#watch(world, this.island)};
     this.past = new Past(live, this.feed, this.history, changes);
+    this.undo = new UndoHistory(() => changes.notify());
     const timer = setInterval(poll, poll_ms);
     this.#end.push(
       server.on_message((message) => this.#take(message)),
@@ -117,7 +120,7 @@ export class ViewedWorld {
   #watch(world: string, island: number): void {
     this.#forget(world, island);
     this.selection.post();
-    this.server.post({kind: "population", pane: this.pane, columns: null});
+    this.server.post({kind: "population", pane: this.feed.pane, columns: null});
     this.feed.subscribe();
     this.parameters.read();
     this.changes.notify();
@@ -143,7 +146,7 @@ export class ViewedWorld {
       }
       return;
     }
-    if (!("pane" in message) || message.pane !== this.pane) {
+    if (!("pane" in message) || message.pane !== this.feed.pane) {
       return;
     }
     switch (message.kind) {
