@@ -45,11 +45,11 @@ def save(page, name, part=None):
 def show(page, tick, panel, shown):
     """Runs the world to a tick, pauses it, and shows its healthiest organism and a panel."""
     page.take_part()
-    page.click("Run" if page.value("evod.app.world().state") == "RUN_STATE_WAITING" else "Resume")
+    page.click("Run" if page.value("evod.app.world().control.state") == "RUN_STATE_WAITING" else "Resume")
     page.wait("evod.app.world().snapshot.tick >= arguments[0]", f"tick {tick}", tick)
-    page.wait("evod.app.world().state === 'RUN_STATE_RUNNING'", "the run")
+    page.wait("evod.app.world().control.state === 'RUN_STATE_RUNNING'", "the run")
     page.click("Pause")
-    page.wait("evod.app.world().state === 'RUN_STATE_PAUSED'", "the pause")
+    page.wait("evod.app.world().control.state === 'RUN_STATE_PAUSED'", "the pause")
     page.click(page.element(".healthiest .link"))
     page.panel(panel)
     page.wait("document.querySelector('.panel-body').innerText.includes(arguments[0])", "the panel", shown)

@@ -74,7 +74,7 @@ class Family(page.Case):
         self.assertIn((last - 1, parent), parents[last, other])
         drawing.send_keys(Keys.ENTER)
         browser.wait("evod.app.world().snapshot.generation === arguments[0]", "the past", last - 1)
-        browser.wait("evod.app.world().selected === arguments[0]", f"organism {parent} selected", parent)
+        browser.wait("evod.app.world().selection.id === arguments[0]", f"organism {parent} selected", parent)
 
 
 if __name__ == "__main__":

@@ -56,14 +56,14 @@ class Freezer(Case):
     def test_a_kept_organism_is_placed_and_outlives_the_page(self):
         browser = self.browser
         self.keep("Healthiest", "leader")
-        healthiest = browser.value("evod.app.world().healthiest[0].id")
+        healthiest = browser.value("evod.app.world().feed.healthiest[0].id")
         browser.reload()
         self.show()
         browser.press("leader", PANEL)
         self.entry("leader")
-        browser.run("evod.app.world().select(arguments[0])", healthiest)
+        browser.run("evod.app.world().selection.select(arguments[0])", healthiest)
         browser.wait_for_text(f"Organism {healthiest} has the same 6 genes.", PANEL)
-        browser.run("evod.app.world().select(arguments[0])", (healthiest + 1) % 30)
+        browser.run("evod.app.world().selection.select(arguments[0])", (healthiest + 1) % 30)
         browser.wait_for_text("differs in 6 of 6 genes.", PANEL)
         browser.press("Place at random places", PANEL)  # some of the places are occupied at first
         browser.wait_for_text("Placed 10 copies of leader in default, island 0.", ".notices")

@@ -388,12 +388,41 @@ class Controls(Case):
         browser.press("Undo")
         self.assertEqual(self.changed("mutation_chance"), 0.25)
 
+    def test_undo_reverses_changes_and_placings(self):
+        browser = self.browser
+        browser.take_part()
+        browser.press("Food")
+        left, top, width, height = browser.canvas()
+        browser.click_at(left + width / 4, top + height / 3)
+        placed = self.control.next_event("placed").placed
+        browser.wait("evod.app.world().undo.next_undo === 'placed 1 food'", "the placed food in the history")
+        browser.panel("Parameters")
+        self.wait_enabled("mutation_chance")
+        before = self.value_of(self.control, "mutation_chance")
+        browser.type_into(self.field("mutation_chance"), "0.25")
+        self.field("mutation_chance").send_keys(Keys.CONTROL, "z")  # the field undoes its own text
+        browser.type_into(self.field("mutation_chance"), "0.25")
+        browser.press("Apply")
+        self.assertEqual(self.changed("mutation_chance"), 0.25)
+        browser.wait("evod.app.world().undo.next_undo === 'Mutation chance'", "the change in the history")
+        browser.element("body").send_keys(Keys.CONTROL, "z")
+        self.assertEqual(self.changed("mutation_chance"), before)
+        browser.wait("evod.app.world().undo.next_undo === 'placed 1 food'", "the end of the first undo")
+        browser.press("Undo", ".tools")
+        self.assertEqual(self.control.next_event("removed").removed.food, placed.food)
+        browser.wait("evod.app.world().undo.next_redo === 'placed 1 food'", "the end of the second undo")
+        browser.element("body").send_keys(Keys.CONTROL, Keys.SHIFT, "z")
+        self.assertEqual(len(self.control.next_event("placed").placed.food), 1)
+        browser.wait("evod.app.world().undo.next_redo === 'Mutation chance'", "the end of the redo")
+        browser.element("body").send_keys(Keys.CONTROL, "y")
+        self.assertEqual(self.changed("mutation_chance"), 0.25)
+
     def test_the_run_bar_controls_the_world(self):
         browser = self.browser
         browser.take_part()
         browser.press("Max")
         self.control.wait_world(lambda world: world.speed.max, "default")
-        browser.wait("evod.app.world().speed?.max", "the maximum speed")
+        browser.wait("evod.app.world().control.speed?.max", "the maximum speed")
         browser.press("One generation")
         self.control.wait_world(lambda world: world.tick == 120 and world.state == w.RUN_STATE_WAITING, "default")
         self.shown_tick(120)
@@ -524,7 +553,7 @@ class Past(Case):
         browser = self.browser
         browser.open(self.page(self.served, "#world=default&generation=2&tick=30&island=0&organism=7"))
         before = self.shown(2, 30)
-        browser.wait("evod.app.world().selected === 7", "the selected organism")
+        browser.wait("evod.app.world().selection.id === 7", "the selected organism")
         link = browser.run("""let copied = null;
             navigator.clipboard.writeText = async (text) => { copied = text; };
             arguments[0].click();
@@ -578,7 +607,7 @@ class Connection(Case):
         browser.wait_for_text("not connected", ".pane-state")
         self.assertEqual(browser.snapshot()["tick"], 130)  # the last image stays
         browser.run("""globalThis.answered = null;
-            evod.app.world().run_until_tick(200).then(() => answered = "yes", (error) => answered = error.message);""")
+            evod.app.world().control.run_until_tick(200).then(() => answered = "yes", (error) => answered = error.message);""")
         self.restart()
         browser.wait("answered", "the answer of the new server")
         self.assertEqual(browser.value("answered"), "yes")
@@ -689,7 +718,7 @@ class Keyboard(Case):
                      "an enabled button")
         browser.element(".run-bar .run").send_keys(Keys.ENTER)
         self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, "default")
-        browser.wait("evod.app.world().state === 'RUN_STATE_RUNNING'", "running")
+        browser.wait("evod.app.world().control.state === 'RUN_STATE_RUNNING'", "running")
         browser.element(".pane-canvas").send_keys(Keys.SPACE)
         paused = self.control.wait_world(lambda world: world.state == w.RUN_STATE_PAUSED, "default")
         self.shown_tick(paused.tick)
@@ -746,7 +775,7 @@ class Keyboard(Case):
         self.assertGreaterEqual(len(alone), 2)
         for organism in alone[:3]:
             browser.tap(*place[organism])
-            browser.wait("evod.app.world().selected === arguments[0]", f"organism {organism} selected", organism)
+            browser.wait("evod.app.world().selection.id === arguments[0]", f"organism {organism} selected", organism)
             browser.wait_for_text(f"{organism}", "[data-panel=organism]")
 
 

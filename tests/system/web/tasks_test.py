@@ -74,7 +74,7 @@ class Tasks(Case):
         shown = self.browser.columns()["organisms"]
         row = shown["id"].index(organism)
         self.click_island(shown["x"][row] / 16, shown["y"][row] / 16)
-        self.browser.wait("evod.app.world().selected === arguments[0]", f"organism {organism} selected", organism)
+        self.browser.wait("evod.app.world().selection.id === arguments[0]", f"organism {organism} selected", organism)
 
     def child(self):
         """An organism that is alive, is not covered by others, and has parents."""
@@ -107,7 +107,7 @@ class Tasks(Case):
         organism = self.child().id
         self.click_organism(organism)
         self.key("l")
-        self.browser.wait("evod.app.world().follow && evod.app.world().selected === arguments[0]", "following", organism)
+        self.browser.wait("evod.app.world().selection.follow && evod.app.world().selection.id === arguments[0]", "following", organism)
 
     def test_show_generation_5_again(self):
         left, top, width, height = self.browser.value("""(({ left, top, width, height }) => [left, top, width, height])(
@@ -118,7 +118,7 @@ class Tasks(Case):
             world.snapshot.generation)(evod.app.world())""", "an earlier generation")
         self.assertIn(generation, (4, 5, 6))
         self.key(Keys.SPACE)
-        self.browser.wait("evod.app.world().state === 'RUN_STATE_RUNNING'", "the replay playing")
+        self.browser.wait("evod.app.world().control.state === 'RUN_STATE_RUNNING'", "the replay playing")
 
     def test_compare_two_worlds(self):
         self.control.call(create_world=c.CreateWorld(name="other", seed=2))

@@ -55,7 +55,7 @@ export class App implements KeyTarget {
       on_select: () => this.#show_organism(),
       on_change: () => this.#refresh_column(),
     });
-    this.#curve = new FitnessCurve((generation) => void this.attempt(() => this.world().show_past(generation)));
+    this.#curve = new FitnessCurve((generation) => void this.attempt(() => this.world().past.show(generation)));
     const button = (label: string, name: string, help: string, classes: string, act: () => void) =>
       h("button", {type: "button", class: `button square ${classes}`, "aria-label": name, title: help, onclick: act},
         label);
@@ -64,7 +64,7 @@ export class App implements KeyTarget {
     this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
     const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, panels.map((make) => make(this)), new Tools(() => this.panes.focused.pane.tool, this.notify),
+      this, server, panels.map((make) => make(this)), new Tools(this, () => this.panes.focused.pane.tool),
       [theme_button(), help, hide]);
     this.column.curve.append(this.#curve.element);
     this.element =
@@ -172,7 +172,7 @@ export class App implements KeyTarget {
     } else if (!(await this.attempt(act))) {
       return;
     }
-    world.forked = fork;
+    world.past.forked = fork;
     this.notify(app_texts.forked(fork));
     this.show_beside(fork, island);
   };
@@ -187,8 +187,8 @@ export class App implements KeyTarget {
       generation: snapshot.generation,
       tick: snapshot.generation_tick,
       island: snapshot.island_count > 1 ? snapshot.island : null,
-      organism: world.selected,
-      rate: world.has_rate ? world.rate_hz : null,
+      organism: world.selection.id,
+      rate: world.feed.has_rate ? world.feed.rate_hz : null,
     });
   }
 

@@ -33,7 +33,7 @@ export class GenerationField {
 
   /** Shows the generation, unless the user types. */
   refresh(): void {
-    const {snapshot, target} = this.#world, {first, last} = this.#allowed();
+    const {snapshot, past: {target}} = this.#world, {first, last} = this.#allowed();
     set_attribute(this.#field, "title", texts.help(first, last));
     if (document.activeElement !== this.#field && snapshot) {
       set_value(this.#field, String(target?.generation ?? snapshot.generation));
@@ -42,7 +42,7 @@ export class GenerationField {
 
   /** The history of a live world may begin later than its run. */
   #allowed(): {first: number; last: number} {
-    const {range, is_replay} = this.#world;
+    const {past: {range}, is_replay} = this.#world;
     return {first: is_replay && range ? range.first_generation : 1, last: range?.last_generation ?? 1};
   }
 

@@ -43,8 +43,8 @@ export class IslandLegend {
   refresh(world: ViewedWorld, shows_all: boolean): void {
     const scale = scale_of(world);
     const {title, entries} = entries_of(world);
-    const is_known = !shows_all || (world.look.colour_by === "health" && world.drawing?.density === null);
-    this.element.hidden = world.drawing === null || !is_known || (scale === null && entries.length === 0);
+    const is_known = !shows_all || (world.look.colour_by === "health" && world.feed.drawing?.density === null);
+    this.element.hidden = world.feed.drawing === null || !is_known || (scale === null && entries.length === 0);
     if (this.element.hidden) {
       return;
     }
@@ -84,7 +84,7 @@ export class IslandLegend {
 }
 
 function scale_of(world: ViewedWorld): Scale|null {
-  const {drawing, look} = world;
+  const {feed: {drawing}, look} = world;
   if (drawing === null) {
     return null;
   }
@@ -101,7 +101,7 @@ function scale_of(world: ViewedWorld): Scale|null {
 }
 
 function entries_of(world: ViewedWorld): {title: string; entries: Entry[]} {
-  const {drawing, look, population} = world;
+  const {feed: {drawing}, look, population: {columns: population}} = world;
   const entries: Entry[] = [];
   let title = "";
   const add = (mark: Entry["mark"], colour: Colour|string, text: string) =>

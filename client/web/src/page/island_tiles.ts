@@ -79,7 +79,7 @@ export class IslandTiles {
   }
 
   take(message: FromWorker): void {
-    if (message.kind === "tiles" && message.pane === this.#world.pane) {
+    if (message.kind === "tiles" && message.pane === this.#world.feed.pane) {
       this.#infos = message.tiles;
       this.#write();
     }
@@ -110,7 +110,7 @@ export class IslandTiles {
     this.#layout_key = "";
     const had_focus = this.has_focus;
     this.element.hidden = count === 0;
-    this.#world.server.post({kind: "islands", pane: this.#world.pane, islands: count});
+    this.#world.server.post({kind: "islands", pane: this.#world.feed.pane, islands: count});
     this.#tiles = Array.from({length: count}, (_, island) => this.#tile(island));
     this.element.replaceChildren(...this.#tiles.map(({button}) => button));
     this.#on_change(had_focus);
@@ -162,7 +162,7 @@ export class IslandTiles {
 
   /** The mean fitness of the newest finished generation of each island, by island. */
   #fitness_means(): Map<number, number> {
-    const {history} = this.#world, means = new Map<number, number>();
+    const {generations: history} = this.#world.history, means = new Map<number, number>();
     for (let i = history.length - 1; i >= 0 && history.length - i <= this.#count; --i) {
       const {island = 0, fitness_mean} = history[i]!;
       if (!means.has(island)) {

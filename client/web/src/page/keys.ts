@@ -7,6 +7,7 @@ import {Dialog} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
+import {undo, undo_verb_of} from "../world/undo_command";
 import type {Column} from "./column";
 import type {PaneAreas} from "./pane_areas";
 import {toggle_replay} from "./run_bar";
@@ -44,33 +45,37 @@ const bindings: Binding[] = [
     keys: [" "],
     shown: "Space",
     help: key_help.pause,
-    act: (app) => command(app, "pause", () => app.world().pause_or_resume())
+    act: (app) => command(app, "pause", () => app.world().control.pause_or_resume())
   },
-  {keys: ["."], help: key_help.tick, act: (app) => command(app, "pause", () => app.world().step(1))},
+  {keys: ["."], help: key_help.tick, act: (app) => command(app, "pause", () => app.world().control.step(1))},
   {
     keys: [">", ":"],
     shown: "Shift+.",
     help: key_help.ticks,
-    act: (app) => command(app, "pause", () => app.world().step(60))
+    act: (app) => command(app, "pause", () => app.world().control.step(60))
   },
   {
     keys: ["+", "="],
     shown: "+",
     help: key_help.faster,
-    act: (app) => command(app, "set_speed", () => app.world().multiply_speed(2))
+    act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(2))
   },
   {
     keys: ["-", "_"],
     shown: "−",
     help: key_help.slower,
-    act: (app) => command(app, "set_speed", () => app.world().multiply_speed(0.5))
+    act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(0.5))
   },
   {
     keys: ["r"],
     help: key_help.real_time,
-    act: (app) => command(app, "set_speed", () => app.world().set_speed({real_time_factor: 1}))
+    act: (app) => command(app, "set_speed", () => app.world().control.set_speed({real_time_factor: 1}))
   },
-  {keys: ["m"], help: key_help.maximum, act: (app) => command(app, "set_speed", () => app.world().toggle_max_speed())},
+  {
+    keys: ["m"],
+    help: key_help.maximum,
+    act: (app) => command(app, "set_speed", () => app.world().control.toggle_max_speed())
+  },
   {keys: ["PageDown"], shown: "Page Down", help: key_help.next_island, act: (app) => move_island(app, 1)},
   {keys: ["PageUp"], shown: "Page Up", help: key_help.previous_island, act: (app) => move_island(app, -1)},
   {keys: ["i"], help: key_help.all_islands, act: (app) => app.panes.focused.toggle_tiles(app.notify)},
@@ -94,7 +99,7 @@ const bindings: Binding[] = [
     help: key_help.move,
     act: (app, event) => app.panes.focused.pane.view.pan(arrows[event.key]!)
   },
-  {keys: ["l"], help: key_help.follow, act: (app) => app.world().set_follow(!app.world().follow)},
+  {keys: ["l"], help: key_help.follow, act: (app) => app.world().selection.set_follow(!app.world().selection.follow)},
   {keys: ["c"], help: key_help.colour, act: (app) => next_colouring(app)},
   {
     keys: ["v"],
@@ -116,6 +121,12 @@ export function listen_to_keys(app: KeyTarget): void {
   }, true);
   document.addEventListener("keydown", (event) => {
     by_pointer &&= event.key === " ";
+    const verb = event.defaultPrevented || document.querySelector("dialog[open]") ? null : undo_verb_of(event);
+    if (verb !== null) {
+      event.preventDefault();
+      void undo(app, verb);
+      return;
+    }
     if (event.defaultPrevented || event.ctrlKey || event.altKey || event.metaKey || keeps_key(event)) {
       return;
     }
@@ -215,7 +226,7 @@ async function command(app: KeyTarget, kind: RequestKind, act: () => Promise<voi
   }
   if (why) {
     app.notify(why);
-  } else if (world.is_over && kind !== "set_speed") {
+  } else if (world.control.is_over && kind !== "set_speed") {
     app.notify(world.is_replay ? key_texts.end_of_replay : key_texts.run_has_ended);
   } else {
     await act();
@@ -240,7 +251,7 @@ async function move_generation(app: KeyTarget, by: number): Promise<void> {
     app.notify(key_texts.is_live);
     return;
   }
-  await world.move_generations(by);
+  await world.past.move_generations(by);
 }
 
 function next_of(shown: "none"|"selected"|"all"): "none"|"selected"|"all" {
@@ -258,8 +269,8 @@ function escape(app: KeyTarget): void {
   const {tool, tiles} = app.panes.focused.pane, world = app.world();
   if (tool.tool !== "select") {
     tool.set("select");
-  } else if (world.selected !== null) {
-    world.select(null);
+  } else if (world.selection.id !== null) {
+    world.selection.select(null);
   } else if (tiles.is_on) {
     tiles.toggle();
   } else {

@@ -61,7 +61,7 @@ export class LinkFollower {
       return;
     }
     const rate_max = Math.floor(server.limits.snapshot_rate_hz_max ?? rate_max_hz);
-    world.set_rate(within(read, "rate", texts.this_server, 1, rate_max));
+    world.feed.set_rate(within(read, "rate", texts.this_server, 1, rate_max));
     const island = within(read, "island", texts.world(name), 0, (info.island_count ?? 1) - 1) ?? 0;
     if (moment.generation === null || world.name !== name) {
       world.show(name, island);
@@ -71,11 +71,11 @@ export class LinkFollower {
     if (moment.generation !== null) {
       const {generation, tick} = moment;
       await this.#show_past(read, world, tick === null ? {generation} : {generation, tick}, is_newest);
-      if (is_newest() && world.is_own_replay && world.state === "RUN_STATE_RUNNING") {
-        await world.pause();
+      if (is_newest() && world.past.is_own_replay && world.control.state === "RUN_STATE_RUNNING") {
+        await world.control.pause();
       }
     } else {
-      await world.drawn();
+      await world.feed.drawn();
     }
     if (is_newest() && world.snapshot) {
       this.#select(read, world);
@@ -86,7 +86,7 @@ export class LinkFollower {
   async #show_past(read: ReadLink, world: ViewedWorld, wanted: Moment, is_newest: () => boolean): Promise<void> {
     for (let corrections = 0; is_newest(); ++corrections) {
       try {
-        return await world.show_moment(wanted);
+        return await world.past.show_moment(wanted);
       } catch (error) {
         const wrong = error instanceof Refusal && corrections < corrections_max ? error.violations[0] : undefined;
         const next = wrong && nearest(read, wanted, wrong.field, wrong.allowed);
@@ -102,14 +102,14 @@ export class LinkFollower {
     const {snapshot} = world, {organism} = read.moment, wrong_before = read.wrong.length;
     const count = snapshot!.live?.organism_count ?? 0;
     if (organism === null) {
-      world.select(null);
+      world.selection.select(null);
       return;
     }
     if (count > 0) {
       within(read, "organism", texts.generation(snapshot!.generation), 0, count - 1);
     }
     if (read.wrong.length === wrong_before) {
-      world.select(organism);
+      world.selection.select(organism);
       this.#context.open("organism");
     }
   }

@@ -70,17 +70,17 @@ export class Pane {
     this.element =
       h("div", {class: "pane"}, this.#canvas, this.#legend.element, this.#hint, this.#note, this.tiles.element,
         h("div", {class: "pane-focus"}));
-    this.#picker = new Picker(this.#world.pane, options.worker.post.bind(options.worker));
+    this.#picker = new Picker(this.#world.feed.pane, options.worker.post.bind(options.worker));
     this.#gestures = new Gestures(this.#canvas, this.#target());
     this.#canvas.addEventListener("pointerdown", () => options.on_focus?.());
     this.#canvas.addEventListener("focus", () => options.on_focus?.());
     this.#canvas.addEventListener("keydown", (event) => this.#key_down(event));
     this.#ends.push(
       observe_size(this.#canvas, (size, pixel_ratio) => this.#resized(size, pixel_ratio)),
-      options.worker.on_message((message) => this.#take(message)), this.#world.on_change(() => this.#refresh()));
+      options.worker.on_message((message) => this.#take(message)), this.#world.changes.listen(() => this.#refresh()));
     if (typeof this.#canvas.transferControlToOffscreen === "function") {
       const canvas = this.#canvas.transferControlToOffscreen();
-      options.worker.post({kind: "pane", pane: this.#world.pane, canvas}, [canvas as unknown as Transferable]);
+      options.worker.post({kind: "pane", pane: this.#world.feed.pane, canvas}, [canvas as unknown as Transferable]);
     } else {
       this.#show_note(pane_texts.no_offscreen_canvas);
     }
@@ -90,7 +90,7 @@ export class Pane {
   close(): void {
     this.#gestures.close();
     this.#ends.forEach((end) => end());
-    this.#options.worker.post({kind: "close_pane", pane: this.#world.pane});
+    this.#options.worker.post({kind: "close_pane", pane: this.#world.feed.pane});
     this.element.remove();
   }
 
@@ -100,14 +100,14 @@ export class Pane {
     this.tiles.take(message);
     this.#picker.take(message);
     if (
-      message.kind === "camera" && message.pane === this.#world.pane && this.#world.follow &&
+      message.kind === "camera" && message.pane === this.#world.feed.pane && this.#world.selection.follow &&
       !this.#gestures.is_panning) {
       this.view.followed(message.camera);
     }
   }
 
   #refresh(): void {
-    const {snapshot, drawing, shown, island} = this.#world;
+    const {snapshot, feed: {drawing}, shown, island} = this.#world;
     if (snapshot !== null) {
       this.#take_size_of_island(snapshot.width_px, snapshot.height_px);
     }
@@ -153,7 +153,7 @@ export class Pane {
 
   #resized(size: Size, pixel_ratio: number): void {
     this.view.size = size;
-    this.#options.worker.post({kind: "resize", pane: this.#world.pane, ...size, pixel_ratio});
+    this.#options.worker.post({kind: "resize", pane: this.#world.feed.pane, ...size, pixel_ratio});
     this.#refresh();
   }
 
@@ -189,13 +189,13 @@ export class Pane {
     return {
       pressed: (at) => {
         this.#pick = this.#picker.what_is_at(at);
-        this.#refresh_hint(this.#world.drawing);
+        this.#refresh_hint(this.#world.feed.drawing);
       },
       clicked: (at) => void this.#click(at, this.#pick!),
       hovered: (at) => {
         this.#pointer = at;
         this.#send_pointer();
-        this.#refresh_hint(this.#world.drawing);
+        this.#refresh_hint(this.#world.feed.drawing);
       },
       panned: (by) => this.view.pan(by),
       zoomed: (at, factor) => this.view.zoom_at(at, factor),
@@ -209,26 +209,26 @@ export class Pane {
     const key = `${at?.x} ${at?.y} ${tool}`;
     if (key !== this.#sent_pointer) {
       this.#sent_pointer = key;
-      this.#options.worker.post({kind: "pointer", pane: this.#world.pane, at, tool});
+      this.#options.worker.post({kind: "pointer", pane: this.#world.feed.pane, at, tool});
     }
   }
 
   /** The organism that was under the pointer when it was pressed is meant, even if it has moved on since. */
   async #click(at: Point, pick: Promise<Picked>): Promise<void> {
     const now_ms = performance.now(), last = this.#last_click;
-    this.#last_click = {at, ms: now_ms, selected: this.#world.selected};
+    this.#last_click = {at, ms: now_ms, selected: this.#world.selection.id};
     if (
       this.tool.tool === "select" && last !== null && now_ms - last.ms < double_click_ms &&
       Math.hypot(at.x - last.at.x, at.y - last.at.y) < double_click_pixels) {
       this.#last_click = null;
       this.view.fit();
       await pick; // the first click has selected by now what is there, and a double click selects nothing
-      this.#world.select(last.selected);
+      this.#world.selection.select(last.selected);
       return;
     }
     const picked = await pick;
     if (this.tool.tool === "select") {
-      this.#world.select(picked.organism);
+      this.#world.selection.select(picked.organism);
       if (picked.organism !== null) {
         this.#options.on_select?.();
       }

@@ -60,7 +60,7 @@ export class PaneArea {
           this.#state, this.#islands, this.#link, this.#beside),
         h("div", {class: "pane-stage"}, this.pane.element, this.#message), this.timeline.element, this.#foot);
     this.set_beside(false, false);
-    world.on_change(() => this.#refresh());
+    world.changes.listen(() => this.#refresh());
     this.#refresh();
   }
 
@@ -101,8 +101,9 @@ export class PaneArea {
     set_text(this.#generation, snapshot ? pane_texts.generation(snapshot.generation) : "");
     this.#replay.hidden = !replay_of;
     set_text(this.#replay, replay_of ? pane_texts.replay_of(replay_of) : "");
-    const is_running = world.state === "RUN_STATE_RUNNING";
-    set_text(this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.speed, is_running) : world.name);
+    const is_running = world.control.state === "RUN_STATE_RUNNING";
+    set_text(
+      this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.control.speed, is_running) : world.name);
     const is_connected = server.state.phase === "open";
     set_text(this.#state, this.#state_text() + (is_connected && is_running && info?.slowed ? pane_texts.slower : ""));
     set_attribute(this.#state, "data-state", is_connected && is_running ? "running" : "stopped");
@@ -113,14 +114,14 @@ export class PaneArea {
     }
     texts.forEach((text, i) => set_text(this.#foot.children[i] ?? this.#foot.appendChild(h("span", {})), text));
     const is_waiting = !snapshot && world.shown !== "" && !this.pane.tiles.is_on;
-    set_text(this.#message, world.problem || (is_waiting ? pane_texts.waiting : ""));
+    set_text(this.#message, world.feed.problem || (is_waiting ? pane_texts.waiting : ""));
     this.#message.hidden = this.#message.textContent === "";
     set_attribute(
       this.element, "aria-label", world.name ? pane_texts.world_named(world.name, world.is_replay) : pane_texts.world);
   }
 
   #state_text(): string {
-    const {info, server, snapshot, at_end, state} = this.world;
+    const {info, server, snapshot, control: {at_end, state}} = this.world;
     if (server.state.phase !== "open") {
       return pane_texts.not_connected;
     }

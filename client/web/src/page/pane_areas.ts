@@ -59,17 +59,17 @@ export class PaneAreas {
     const server = this.#server, shown = this.focused.world, {name, island} = shown;
     const names = server.world_names;
     const next = names[(names.indexOf(name) + 1) % names.length];
-    if (shown.forked && server.world(shown.forked)) {
-      this.show_beside(shown.forked, island);
-    } else if (shown.is_own_replay) {
+    if (shown.past.forked && server.world(shown.past.forked)) {
+      this.show_beside(shown.past.forked, island);
+    } else if (shown.past.is_own_replay) {
       this.show_beside(name, island);
     } else if (next !== undefined && next !== name) {
       this.show_beside(next);
-    } else if (shown.past_problem) {
-      this.#options.notify(shown.past_problem);
+    } else if (shown.past.problem) {
+      this.#options.notify(shown.past.problem);
     } else {
       const generation = shown.snapshot?.generation ?? 1, past = this.show_beside(name, island);
-      void this.#options.attempt(() => past.show_past(generation));
+      void this.#options.attempt(() => past.past.show(generation));
     }
   }
 
@@ -115,7 +115,7 @@ export class PaneAreas {
     }
     this.all.push(area);
     this.element.append(area.element);
-    world.on_change(() => {
+    world.changes.listen(() => {
       if (this.focused.world === world) {
         this.#options.on_change();
       }

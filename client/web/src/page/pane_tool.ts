@@ -4,6 +4,7 @@ import type {Place, Remove} from "../core/protocol";
 import {tool_texts} from "../texts/pane";
 import {gene_problem} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
+import {place} from "../world/placing";
 import type {ViewedWorld} from "../world/world";
 import type {Picked} from "./picker";
 
@@ -22,7 +23,7 @@ export class PaneTool {
   }
 
   set(tool: Tool): void {
-    const {organism, selected} = this.#world;
+    const {info: organism, id: selected} = this.#world.selection;
     if (tool === "organism" && organism !== null && selected !== null) {
       this.model = {name: tool_texts.copy_of(selected), genes: [...(organism.genes ?? [])]};
     }
@@ -61,10 +62,10 @@ export class PaneTool {
     if (why !== "") {
       return why;
     }
-    if (tool === "organism" && model === null && world.organism === null) {
+    if (tool === "organism" && model === null && world.selection.info === null) {
       return tool_texts.no_organism;
     }
-    const copies_selected = model === this.model && this.tool !== "organism" && world.organism !== null;
+    const copies_selected = model === this.model && this.tool !== "organism" && world.selection.info !== null;
     return tool === "organism" && model?.gene_names && !copies_selected ?
       gene_problem(model.name, model.gene_names, world.name, world.gene_names) :
       "";
@@ -94,17 +95,17 @@ export class PaneTool {
     if (problem !== "" || picked.x_px < 0 || this.#world.snapshot === null) {
       return problem;
     }
-    const {server, shown, island} = this.#world, where = {world: shown, island};
+    const {server, shown, island} = this.#world;
     try {
       if (this.tool !== "remove") {
-        await server.request("place", {...where, ...this.#placing_at(picked)});
+        await place(this.#world, this.#placing_at(picked));
         return "";
       }
       const removal = removal_of(picked);
       if (removal === null) {
         return tool_texts.nothing_to_remove;
       }
-      await server.request("remove", {...where, ...removal});
+      await server.request("remove", {world: shown, island, ...removal});
       return "";
     } catch (error) {
       return error instanceof Error ? error.message : String(error);
@@ -115,11 +116,11 @@ export class PaneTool {
     const {width_px, height_px, item_radius_px} = this.#world.snapshot!;
     const inside = (value: number, size: number, radius: number): number =>
       Math.min(Math.max(value, radius), size - radius);
-    const place = (radius: number) => ({x_px: inside(x_px, width_px, radius), y_px: inside(y_px, height_px, radius)});
+    const at = (radius: number) => ({x_px: inside(x_px, width_px, radius), y_px: inside(y_px, height_px, radius)});
     if (this.tool === "organism") {
-      return {organisms: [{...place(organism_radius_px), genes: this.model?.genes ?? []}]};
+      return {organisms: [{...at(organism_radius_px), genes: this.model?.genes ?? []}]};
     }
-    return {items: [{...place(item_radius_px), kind: this.tool === "food" ? "ITEM_KIND_FOOD" : "ITEM_KIND_POISON"}]};
+    return {items: [{...at(item_radius_px), kind: this.tool === "food" ? "ITEM_KIND_FOOD" : "ITEM_KIND_POISON"}]};
   }
 }
 

@@ -38,13 +38,13 @@ export class PaneView {
   /** Shows this part without moving a linked view. */
   set(camera: Camera|null): void {
     this.camera = camera;
-    this.#world.server.post({kind: "camera", pane: this.#world.pane, camera});
+    this.#world.server.post({kind: "camera", pane: this.#world.feed.pane, camera});
   }
 
   /** Shows the whole island. */
   fit(): void {
     if (!this.shows_all) {
-      this.#world.set_follow(false);
+      this.#world.selection.set_follow(false);
       this.#move(null);
     }
   }
@@ -53,8 +53,8 @@ export class PaneView {
   pan(by: Point): void {
     const shown = this.shown();
     if (shown !== null && !this.shows_all && (by.x !== 0 || by.y !== 0)) {
-      if (this.#world.follow) {
-        this.#world.set_follow(false);
+      if (this.#world.selection.follow) {
+        this.#world.selection.set_follow(false);
       }
       this.#move(panned(shown, this.size, this.island!, by));
     }
@@ -77,7 +77,7 @@ export class PaneView {
     const shown = this.shown();
     if (shown !== null) {
       const {screen, zoom} = minimap_place(this.size, this.island!);
-      this.#world.set_follow(false);
+      this.#world.selection.set_follow(false);
       const there = {...shown, x_px: (at.x - screen.left) / zoom, y_px: (at.y - screen.top) / zoom};
       this.#move(panned(there, this.size, this.island!, {x: 0, y: 0}));
     }
@@ -104,7 +104,7 @@ export class PaneView {
     }
     const wanted = other.camera && same_part(other.camera, other.island, this.island, this.size);
     const own = this.shown();
-    if (!this.#world.follow) {
+    if (!this.#world.selection.follow) {
       this.set(wanted);
     } else if (own !== null) {
       this.set({...own, zoom: (wanted ?? fitted(this.size, this.island)).zoom});

@@ -4,8 +4,9 @@ import {run_bar_texts as texts} from "../texts/run_bar";
 import {speed_text} from "../texts/texts";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {speed_max} from "../world/control";
 
-import {speed_max, type ViewedWorld} from "../world/world";
+import type {ViewedWorld} from "../world/world";
 import type {PanelContext} from "../world/panel_context";
 
 const slider_min = 0.1; // times real time; + and − reach the whole range of the server
@@ -34,14 +35,15 @@ export class RunBar {
     this.#context = context;
     const button = (label: string, act: (world: ViewedWorld) => void, classes?: string): HTMLButtonElement =>
       guarded_button(label, context.notify, () => act(context.world()), classes);
-    this.#run = button(texts.run, (world) => this.#attempt(() => world.pause_or_resume()), "button button-primary run");
-    this.#generation = button(texts.generation, (world) => this.#attempt(() => world.run(1)));
+    this.#run =
+      button(texts.run, (world) => this.#attempt(() => world.control.pause_or_resume()), "button button-primary run");
+    this.#generation = button(texts.generation, (world) => this.#attempt(() => world.control.run(1)));
     this.#replay = button(texts.replay, (world) => toggle_replay(context, world));
     this.#fork = button(texts.fork, () => void context.fork());
     this.#new = button(texts.create, () => context.open("worlds", {create: true}), "button new");
-    this.#slower = button("−", (world) => this.#attempt(() => world.multiply_speed(0.5)), "button square");
-    this.#faster = button("+", (world) => this.#attempt(() => world.multiply_speed(2)), "button square");
-    this.#max = button(texts.max, (world) => this.#attempt(() => world.toggle_max_speed()));
+    this.#slower = button("−", (world) => this.#attempt(() => world.control.multiply_speed(0.5)), "button square");
+    this.#faster = button("+", (world) => this.#attempt(() => world.control.multiply_speed(2)), "button square");
+    this.#max = button(texts.max, (world) => this.#attempt(() => world.control.toggle_max_speed()));
     this.#slower.setAttribute("aria-label", texts.slower);
     this.#faster.setAttribute("aria-label", texts.faster);
     this.#slider = h("input", {
@@ -67,25 +69,25 @@ export class RunBar {
     const why_control =
       !world.shown || !(world.snapshot || info) ? texts.no_world : server.why_not("pause", world.shown);
     const why_run = why_control ||
-      (world.state === "RUN_STATE_TERMINATED" ? texts.has_ended :
-         world.at_end                         ? texts.end_of_replay :
-                                                "");
+      (world.control.state === "RUN_STATE_TERMINATED" ? texts.has_ended :
+         world.control.at_end                         ? texts.end_of_replay :
+                                                        "");
     set_text(
       this.#run,
-      world.state === "RUN_STATE_RUNNING"  ? texts.pause :
-        world.state === "RUN_STATE_PAUSED" ? texts.resume :
-                                             texts.run);
+      world.control.state === "RUN_STATE_RUNNING"  ? texts.pause :
+        world.control.state === "RUN_STATE_PAUSED" ? texts.resume :
+                                                     texts.run);
     set_allowed(this.#run, why_run, texts.run_help);
     set_allowed(this.#generation, why_run, texts.generation_help);
-    set_text(this.#replay, world.is_own_replay ? texts.live : texts.replay);
+    set_text(this.#replay, world.past.is_own_replay ? texts.live : texts.replay);
     set_allowed(
-      this.#replay, world.is_own_replay ? "" : world.past_problem,
-      world.is_own_replay ? texts.live_help : texts.replay_help);
+      this.#replay, world.past.is_own_replay ? "" : world.past.problem,
+      world.past.is_own_replay ? texts.live_help : texts.replay_help);
     const why_create = server.why_not("create_world");
     set_allowed(this.#fork, !info ? texts.no_world : why_create, texts.fork_help);
     set_allowed(this.#new, why_create, texts.create_help);
     const why_speed = why_control && (server.why_not("set_speed", world.shown) || why_control),
-          max = world.speed?.max === true;
+          max = world.control.speed?.max === true;
     set_allowed(this.#slower, why_speed, texts.slower_help);
     set_allowed(this.#faster, why_speed || (max ? texts.is_fastest : ""), texts.faster_help);
     set_allowed(this.#max, why_speed, texts.max_help);
@@ -93,8 +95,8 @@ export class RunBar {
     this.#slider.disabled = why_speed !== "" || max;
     this.#slider.title = why_speed;
     if (!this.#dragged && performance.now() > this.#sent_at + 400) {
-      this.#slider.value = String(position_of(world.factor));
-      this.#say(max ? "max" : speed_text({real_time_factor: world.factor}));
+      this.#slider.value = String(position_of(world.control.factor));
+      this.#say(max ? "max" : speed_text({real_time_factor: world.control.factor}));
     }
     set_text(this.#slowed, world.snapshot?.slowed ? texts.slowed : "");
   }
@@ -114,7 +116,7 @@ export class RunBar {
     this.#dragged = false;
     this.#sent_at = performance.now();
     const world = this.#context.world(), factor = factor_at(Number(this.#slider.value));
-    this.#attempt(() => world.set_speed({real_time_factor: factor}));
+    this.#attempt(() => world.control.set_speed({real_time_factor: factor}));
   }
 
   #attempt(what: () => Promise<unknown>): void {
@@ -125,7 +127,7 @@ export class RunBar {
 /** Opens a replay at the beginning of the shown generation, or returns to the live world. */
 export function toggle_replay(context: PanelContext, world: ViewedWorld): void {
   void context.attempt(
-    () => (world.is_own_replay ? world.back_to_live() : world.show_past(world.snapshot?.generation ?? 1)));
+    () => (world.past.is_own_replay ? world.past.back_to_live() : world.past.show(world.snapshot?.generation ?? 1)));
 }
 
 /** The speed at a position of the slider, in two significant digits, so that 1 and 10 are easy to hit. */

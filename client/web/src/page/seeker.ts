@@ -35,7 +35,7 @@ export class Seeker {
   }
 
   go_to_first(): void {
-    const {range} = this.#world;
+    const {range} = this.#world.past;
     if (range) {
       this.go({generation: range.first_generation});
     }
@@ -46,7 +46,7 @@ export class Seeker {
     while (this.#waiting) {
       const moment = this.#waiting;
       this.#waiting = null;
-      if (!(await this.#attempt(() => this.#world.show_nearest(moment)))) {
+      if (!(await this.#attempt(() => this.#world.past.show_nearest(moment)))) {
         this.#waiting = null;
       }
     }

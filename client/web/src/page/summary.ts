@@ -67,7 +67,7 @@ export class Summary {
     const world = this.#context.world(), server = this.#server, {state, taking_part} = server;
     const is_damaged = server.damage_of(world.name) !== "";
     const state_text = is_damaged ? texts.is_damaged : world.name ? texts.loading : texts.none_open;
-    set_text(this.#experiment, world.experiment || state_text);
+    set_text(this.#experiment, world.parameters.experiment || state_text);
     this.#legend.refresh(world);
     this.#refresh_healthiest();
     this.#run_bar.refresh();
@@ -98,7 +98,7 @@ export class Summary {
   }
 
   #refresh_healthiest(): void {
-    const {healthiest, selected, snapshot} = this.#context.world();
+    const {feed: {healthiest}, selection: {id: selected}, snapshot} = this.#context.world();
     this.#buttons.forEach((button, i) => {
       const organism = healthiest[i];
       button.hidden = !organism;
@@ -114,9 +114,9 @@ export class Summary {
   }
 
   #select_healthiest(i: number): void {
-    const world = this.#context.world(), organism = world.healthiest[i];
+    const world = this.#context.world(), organism = world.feed.healthiest[i];
     if (organism) {
-      world.select(organism.id);
+      world.selection.select(organism.id);
     }
   }
 }

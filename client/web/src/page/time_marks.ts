@@ -45,7 +45,8 @@ export class TimeMarks {
   refresh(scale: TimeScale, width_px: number): void {
     const world = this.#world, {first_generation, last_generation} = scale.range;
     const of_run = [world.name, world.island, first_generation, last_generation];
-    const key = [...of_run, world.history.length, world.changes.length, Math.round(width_px)].join(" ");
+    const key =
+      [...of_run, world.history.generations.length, world.history.changes.length, Math.round(width_px)].join(" ");
     if (key === this.#drawn || this.#timer !== 0) {
       return;
     }
@@ -76,7 +77,7 @@ export class TimeMarks {
       return joined_marks(shown.map(({x, text}) => ({part: scale.part_of(x), text})), mark_slots);
     };
     const are_rare = this.#extinctions.length <= extinctions_share_max * (last_generation - first_generation + 1);
-    const changes = marks_at(marks_of(this.#world.changes));
+    const changes = marks_at(marks_of(this.#world.history.changes));
     const extinctions =
       marks_at((are_rare ? this.#extinctions : [])
                  .map((generation) => ({x: generation, text: timeline_texts.extinction(generation)})));
@@ -91,7 +92,7 @@ export class TimeMarks {
 
   /** Adds the extinctions of the generations that have ended since the last call. */
   #scan_extinctions(): void {
-    const {history, island} = this.#world;
+    const {history: {generations: history}, island} = this.#world;
     if (!this.#scanned || this.#scanned.first !== history[0] || this.#scanned.island !== island) {
       this.#extinctions = [];
       this.#scanned = {first: history[0], island, generation: 0};

@@ -76,7 +76,7 @@ export class TimeSlider {
       return;
     }
     const shown_part = world.is_replay ? scale.part_of(snapshot.generation, snapshot.tick) : 1;
-    const part = this.#dragged ?? this.#place_of(scale, world.target) ?? shown_part;
+    const part = this.#dragged ?? this.#place_of(scale, world.past.target) ?? shown_part;
     this.#knob.style.left = this.#fill.style.width = percent(part);
     const tick = world.is_replay ? timeline_texts.tick(snapshot.generation_tick) : timeline_texts.live;
     set_attribute(this.element, "aria-valuemin", String(scale.range.first_generation));
@@ -88,8 +88,8 @@ export class TimeSlider {
   }
 
   #scale(): TimeScale|null {
-    const {range} = this.#world;
-    return range && new TimeScale(range, (generation) => this.#world.ticks_of(generation));
+    const {range} = this.#world.past;
+    return range && new TimeScale(range, (generation) => this.#world.past.ticks_of(generation));
   }
 
   /** The position of the moment that a seek leads to; null if the page does not know it. */
@@ -97,7 +97,7 @@ export class TimeSlider {
     if (target?.generation === undefined) {
       return null;
     }
-    const ticks = this.#world.ticks_of(target.generation);
+    const ticks = this.#world.past.ticks_of(target.generation);
     return scale.part_of(target.generation, ticks && target.tick !== undefined ? ticks.first + target.tick : undefined);
   }
 
@@ -109,7 +109,7 @@ export class TimeSlider {
       return;
     }
     const {generation, tick} = scale.moment_at(at, this.#width_px);
-    const first = this.#world.ticks_of(generation)?.first,
+    const first = this.#world.past.ticks_of(generation)?.first,
           texts = this.#marks.texts_at(at, mark_px / Math.max(this.#width_px, 1));
     const place = timeline_texts.generation(generation) +
       (tick !== undefined && first !== undefined ? `, ${timeline_texts.tick(tick - first)}` : "");
@@ -180,10 +180,12 @@ export class TimeSlider {
     }
     if (by !== 0) {
       if (world.is_replay || by < 0) {
-        void seeker.attempt(() => (event.shiftKey ? world.move_ticks(by * key_ticks) : world.move_generations(by)));
+        void seeker.attempt(
+          () => (event.shiftKey ? world.past.move_ticks(by * key_ticks) : world.past.move_generations(by)));
       }
     } else if (event.key === "PageUp" || event.key === "PageDown") {
-      void seeker.attempt(() => world.move_generations(event.key === "PageUp" ? page_generations : -page_generations));
+      void seeker.attempt(
+        () => world.past.move_generations(event.key === "PageUp" ? page_generations : -page_generations));
     } else if (event.key === "Home") {
       seeker.go_to_first();
     } else if (event.key === "End") {

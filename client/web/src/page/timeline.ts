@@ -47,11 +47,11 @@ export class Timeline {
     };
     const attempt = (what: () => Promise<unknown>) => (): unknown => context.attempt(what);
     this.#first = button(texts.first, () => seeker.go_to_first(), "square time-end");
-    this.#previous = button(texts.previous, attempt(() => world.move_generations(-1)), "square");
-    this.#play = button(texts.play, attempt(() => world.pause_or_resume()), "time-play");
-    this.#next = button(texts.next, attempt(() => world.move_generations(1)), "square");
+    this.#previous = button(texts.previous, attempt(() => world.past.move_generations(-1)), "square");
+    this.#play = button(texts.play, attempt(() => world.control.pause_or_resume()), "time-play");
+    this.#next = button(texts.next, attempt(() => world.past.move_generations(1)), "square");
     this.#last = button(texts.last, () => seeker.go({}), "square time-end");
-    this.#live = button(texts.live, attempt(() => world.back_to_live()), "time-live");
+    this.#live = button(texts.live, attempt(() => world.past.back_to_live()), "time-live");
     const copy =
       h("button",
         {type: "button", class: "button time-copy", title: texts.copy.help, onclick: () => context.copy_link(world)},
@@ -62,7 +62,7 @@ export class Timeline {
     this.element = h(
       "div", {class: "timeline", role: "group", "aria-label": timeline_texts.name}, this.#buttons, this.#slider.element,
       this.#problem, h("div", {class: "time-buttons time-right"}, this.#live, copy), this.#field.wrong);
-    this.#end = world.on_change(() => this.#refresh());
+    this.#end = world.changes.listen(() => this.#refresh());
     this.#refresh();
   }
 
@@ -72,39 +72,39 @@ export class Timeline {
   }
 
   #refresh(): void {
-    const world = this.#world, {range, snapshot} = world;
+    const world = this.#world, {past: {range}, snapshot} = world;
     this.element.hidden = !world.name;
     set_attribute(this.element, "data-past", String(world.is_replay));
-    const problem = world.is_own_replay || !range ? "" : world.past_problem;
+    const problem = world.past.is_own_replay || !range ? "" : world.past.problem;
     set_text(this.#problem, problem);
     this.#slider.element.hidden = this.#buttons.hidden = this.#live.hidden = problem !== "";
     this.#refresh_buttons(problem);
     if (snapshot && range) {
-      const ticks = world.ticks_of(snapshot.generation), count = ticks ? ticks.last - ticks.first : 0;
+      const ticks = world.past.ticks_of(snapshot.generation), count = ticks ? ticks.last - ticks.first : 0;
       const tick = world.is_replay && count >= snapshot.generation_tick ?
         timeline_texts.tick_of(snapshot.generation_tick, count) :
         timeline_texts.tick(snapshot.generation_tick);
-      set_text(this.#place, world.target ? timeline_texts.going_to(moment_text(world.target)) : tick);
+      set_text(this.#place, world.past.target ? timeline_texts.going_to(moment_text(world.past.target)) : tick);
     }
     this.#field.refresh();
     this.#slider.refresh();
   }
 
   #refresh_buttons(problem: string): void {
-    const world = this.#world, {snapshot, range} = world, generation = snapshot?.generation ?? 1;
-    const is_running = world.is_replay && world.state === "RUN_STATE_RUNNING";
+    const world = this.#world, {snapshot, past: {range}} = world, generation = snapshot?.generation ?? 1;
+    const is_running = world.is_replay && world.control.state === "RUN_STATE_RUNNING";
     const why = !world.is_replay ? timeline_texts.is_live_help :
-      world.is_own_replay        ? "" :
+      world.past.is_own_replay   ? "" :
                                    world.server.why_not("seek", world.shown);
     const is_first = range !== null && generation <= range.first_generation && snapshot?.generation_tick === 0;
     const is_last = range !== null && generation >= range.last_generation;
     set_text(this.#play, is_running ? texts.pause.label : texts.play.label);
-    set_allowed(this.#play, why || (world.at_end ? timeline_texts.is_end : ""), texts.play.help);
+    set_allowed(this.#play, why || (world.control.at_end ? timeline_texts.is_end : ""), texts.play.help);
     set_allowed(this.#first, problem || (range ? "" : timeline_texts.no_world), texts.first.help);
     set_allowed(this.#previous, problem || (is_first ? timeline_texts.is_first : ""), texts.previous.help);
     set_allowed(this.#next, why || (is_last ? timeline_texts.is_last : ""), texts.next.help);
     set_allowed(this.#last, why, texts.last.help);
-    set_allowed(this.#live, world.is_own_replay ? "" : timeline_texts.is_live, texts.live.help);
+    set_allowed(this.#live, world.past.is_own_replay ? "" : timeline_texts.is_live, texts.live.help);
   }
 }
 

@@ -99,7 +99,7 @@ export class FamilyPanel implements Panel {
   // ---- the subject ----
 
   /** What the tree shows if it begins at the shown moment; null if that needs a selected organism. */
-  #shown_root({snapshot, island, selected}: ViewedWorld): OrganismName|null {
+  #shown_root({snapshot, island, selection: {id: selected}}: ViewedWorld): OrganismName|null {
     return !snapshot      ? null :
       this.#choices.whole ? {generation: snapshot.generation, island, organism: 0} :
       selected === null   ? null :
@@ -154,7 +154,7 @@ export class FamilyPanel implements Panel {
     if (this.#shown.colour(colour_by, this.#data)) {
       this.#legend.replaceChildren(...legend_parts(this.#shown.colouring!.legend, tree.first_generation));
     }
-    const colouring = this.#shown.colouring!, {snapshot, island, selected} = world;
+    const colouring = this.#shown.colouring!, {snapshot, island, selection: {id: selected}} = world;
     this.#drawing.show(
       {
         tree,
@@ -192,11 +192,11 @@ export class FamilyPanel implements Panel {
     this.#note.read(world, at);
     const {generation, island, organism} = organism_at(tree, at);
     void this.#context.attempt(async () => {
-      await world.show_past(generation);
+      await world.past.show(generation);
       if (world.island !== island) {
         world.choose_island(island);
       }
-      world.select(organism);
+      world.selection.select(organism);
     });
   }
 }

@@ -76,8 +76,8 @@ export class FreezerPanel implements Panel {
   refresh(): void {
     const world = this.#context.world();
     const why = this.#busy ? texts.busy : world.info ? "" : common_texts.no_world;
-    const why_none = why || (world.healthiest.length > 0 ? "" : texts.none_alive);
-    set_allowed(this.#keep_selected, why || (world.organism ? "" : texts.no_selection), texts.keep_selected_help);
+    const why_none = why || (world.feed.healthiest.length > 0 ? "" : texts.none_alive);
+    set_allowed(this.#keep_selected, why || (world.selection.info ? "" : texts.no_selection), texts.keep_selected_help);
     set_allowed(this.#keep_healthiest, why_none, texts.keep_healthiest_help);
     set_allowed(this.#keep_population, why, texts.keep_population_help);
     this.#entry.refresh();
@@ -163,15 +163,15 @@ export class FreezerPanel implements Panel {
   }
 
   async #selected(): Promise<void> {
-    const world = this.#context.world(), {organism} = world;
+    const world = this.#context.world(), {info: organism} = world.selection;
     if (organism) {
       await this.#keep_organism(
-        world.gene_names, organism.genes ?? [], Number(organism.generation ?? 0), world.selected ?? 0);
+        world.gene_names, organism.genes ?? [], Number(organism.generation ?? 0), world.selection.id ?? 0);
     }
   }
 
   async #healthiest(): Promise<void> {
-    const world = this.#context.world(), first = world.healthiest[0];
+    const world = this.#context.world(), first = world.feed.healthiest[0];
     if (first) {
       const info = await this.#context.server.request(
         "get_organism", {world: world.shown, island: world.island, organism: first.id});

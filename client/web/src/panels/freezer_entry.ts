@@ -90,9 +90,9 @@ export class FreezerEntry {
     set_text(this.#wrong, typeof chosen === "string" ? `${chosen}.` : "");
     this.#genes.element.hidden = typeof chosen === "string";
     if (typeof chosen !== "string") {
-      const {organism, gene_names} = world;
+      const {gene_names, selection: {info: organism}} = world;
       this.#genes.update(
-        shown, chosen, {id: organism ? world.selected : null, gene_names, genes: organism?.genes ?? []});
+        shown, chosen, {id: organism ? world.selection.id : null, gene_names, genes: organism?.genes ?? []});
     }
   }
 

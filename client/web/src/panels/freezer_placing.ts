@@ -6,7 +6,9 @@ import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import {gene_problem} from "../world/names";
 import type {PanelContext} from "../world/panel_context";
+import {place} from "../world/placing";
 import {Refusal} from "../world/server";
+import type {ViewedWorld} from "../world/world";
 
 import type {ChosenOrganism} from "./freezer_choice";
 
@@ -84,13 +86,13 @@ export class FreezerPlacing {
   }
 
   async #place_copies({name, genes}: ChosenOrganism, wanted: number): Promise<void> {
-    const world = this.#context.world(), {snapshot, island} = world, where = {world: world.shown, island};
+    const world = this.#context.world(), {snapshot, island} = world;
     if (!snapshot) {
       return;
     }
     for (let placed = 0; placed < wanted; ++placed) {
       const size = {x: snapshot.width_px, y: snapshot.height_px};
-      if (!await this.#place_copy(where, [...genes], size)) {
+      if (!await this.#place_copy(world, [...genes], size)) {
         throw new Error(texts.no_room(placed, wanted));
       }
     }
@@ -98,14 +100,13 @@ export class FreezerPlacing {
   }
 
   /** Returns whether a free place was found. */
-  async #place_copy(where: {world: string; island: number}, genes: number[], size: {x: number; y: number}):
-    Promise<boolean> {
+  async #place_copy(world: ViewedWorld, genes: number[], size: {x: number; y: number}): Promise<boolean> {
     const random = (length: number): number =>
       length > 2 * margin_px ? margin_px + Math.random() * (length - 2 * margin_px) : length / 2;
     for (let tries = 0; tries < tries_max; ++tries) {
       try {
         const organisms = [{x_px: random(size.x), y_px: random(size.y), genes}];
-        await this.#context.server.request("place", {...where, organisms});
+        await place(world, {organisms});
         return true;
       } catch (error) {
         const is_occupied = error instanceof Refusal && error.violations.some(({field}) => place_field.test(field));

@@ -117,7 +117,7 @@ export class GlassBoxPanel implements Panel {
   }
 
   #go_to_birth(): void {
-    const selected = this.#context.world().selected, {stepper} = this.#steps;
+    const selected = this.#context.world().selection.id, {stepper} = this.#steps;
     if (this.#feed.shown && selected !== null) {
       this.#tabs.open("step");
       this.#steps.move(() => stepper.go_to(stepper.begin_of("breeding") + selected));
@@ -131,8 +131,8 @@ export class GlassBoxPanel implements Panel {
     }
     this.#generation.max = String(last || "");
     this.#generation.disabled = last === 0;
-    this.#birth.hidden =
-      !shown || world.selected === null || shown.key.generation !== newest || world.selected >= shown.descendant_count;
+    this.#birth.hidden = !shown || world.selection.id === null || shown.key.generation !== newest ||
+      world.selection.id >= shown.descendant_count;
     this.#messages.show(world, this.#feed);
     this.#body.hidden = shown === null;
     if (!shown) {

@@ -39,7 +39,7 @@ export class HoldControl {
       this.#holder.update(run_of(world), world.info?.state ?? "", world.info?.run_until_tick !== undefined);
     this.#held.checked = this.#holder.on;
     if (action !== "none") {
-      void this.#context.attempt(() => action === "step one tick" ? world.step(1) : world.run(1));
+      void this.#context.attempt(() => action === "step one tick" ? world.control.step(1) : world.control.run(1));
     }
   }
 }

@@ -62,7 +62,7 @@ export class Stage {
         ];
       case "breeding": {
         const descendant = record.descendants[moment.index];
-        const body = genes_of(world.gene_groups, "body", world.gene_names.length).count;
+        const body = genes_of(world.feed.gene_groups, "body", world.gene_names.length).count;
         return [
           this.#draw_descendants(record, moment.index, width), descendants_legend(),
           ...(descendant ? [draw_family(descendant, world.gene_names, body)] : [])

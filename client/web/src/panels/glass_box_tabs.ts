@@ -64,7 +64,7 @@ export class GlassBoxTabs {
       this.#play_all, glass_box_texts.play_picks(record.pick_count, this.#bets.chosen.checked && this.#bets.any));
     set_text(this.#score, this.#bets.score_line(record, comparison, progress));
     this.#score.hidden = this.#tab === "genes" || this.#score.textContent === "";
-    const next = next_statistics(world.history, record.key);
+    const next = next_statistics(world.history.generations, record.key);
     const drawn = [
       this.#tab, record.key.run_id, record.key.island, record.key.generation, this.#steps.stepper.position,
       record.contenders.length, record.picks.length, record.descendants.length, width, world.gene_names.length,

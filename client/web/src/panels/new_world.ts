@@ -103,13 +103,13 @@ class NewWorldDialog {
     set_attribute(this.#name, "aria-invalid", null);
     set_attribute(this.#seed, "aria-invalid", null);
     set_text(this.#same_label, texts.same(world.name));
-    this.#same.disabled = !world.parameters;
+    this.#same.disabled = !world.parameters.set;
     this.#choices.querySelector("input")!.checked = true;
     this.#choose(presets[0]![0]);
     await this.#list_populations(population);
     if (population) { // an experiment with the genes of the population is more useful than the default
       const genes = this.#kept.find((kept) => kept.name === population)?.gene_names;
-      if (genes && world.parameters && !gene_problem(population, genes, world.name, world.gene_names)) {
+      if (genes && world.parameters.set && !gene_problem(population, genes, world.name, world.gene_names)) {
         this.#same.checked = true;
         await this.#choose_same();
       }

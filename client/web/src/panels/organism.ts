@@ -42,14 +42,14 @@ export class OrganismPanel implements Panel {
   constructor(context: PanelContext) {
     this.#context = context;
     this.#offers = new OrganismOffers((id) => {
-      context.world().select(id);
+      context.world().selection.select(id);
       this.refresh();
     }, () => this.refresh());
     this.#life = new OrganismLife({
-      back_to_live: () => void context.attempt(() => context.world().back_to_live()),
+      back_to_live: () => void context.attempt(() => context.world().past.back_to_live()),
       deselect: () => this.#deselect(),
       open_family: () => this.#open_family(),
-      set_follow: (follow) => context.world().set_follow(follow),
+      set_follow: (follow) => context.world().selection.set_follow(follow),
     });
     const breeding: OriginContext = {
       has_bred: () => this.#history !== null && has_bred(context.world(), this.#history),
@@ -107,15 +107,15 @@ export class OrganismPanel implements Panel {
     }
     const history = this.#history!;
     history.ended = world.snapshot!.generation !== history.place.generation;
-    if (world.organism && !history.ended) {
-      history.add_info(world.organism);
+    if (world.selection.info && !history.ended) {
+      history.add_info(world.selection.info);
     }
-    if (world.population) {
-      history.add_population(world.population);
+    if (world.population.columns) {
+      history.add_population(world.population.columns);
     }
     const needs_population = history.ranges.length === 0 && !history.ended;
     if (needs_population && !this.#release_population) {
-      this.#release_population = world.need_population();
+      this.#release_population = world.population.need();
     } else if (!needs_population) {
       this.#release_population?.();
       this.#release_population = null;
@@ -124,7 +124,7 @@ export class OrganismPanel implements Panel {
 
   /** Returns which organism is to be shown: the place of the known one if it stays; null: none. */
   #place_to_show(world: ViewedWorld): OrganismPlace|null {
-    const {snapshot, selected, island} = world;
+    const {snapshot, selection: {id: selected}, island} = world;
     if (snapshot === null) {
       return null;
     }
@@ -149,7 +149,7 @@ export class OrganismPanel implements Panel {
 
   #deselect(): void {
     this.#forget();
-    this.#context.world().select(null);
+    this.#context.world().selection.select(null);
     this.#offers.renew();
     this.refresh();
     this.#offers.focus();
@@ -181,7 +181,7 @@ export class OrganismPanel implements Panel {
 
   #show_brain(world: ViewedWorld, {info, brain}: OrganismHistory): void {
     const genes = info?.genes ?? [];
-    const {first, count} = genes_of(world.gene_groups, "brain", genes.length);
+    const {first, count} = genes_of(world.feed.gene_groups, "brain", genes.length);
     this.#brain_part.hidden =
       !brain || !this.#brain.update(brain, genes.slice(first, first + count), this.#width.within(280, 560));
   }
@@ -192,13 +192,13 @@ export class OrganismPanel implements Panel {
     const world = this.#context.world();
     void this.#context.attempt(async () => {
       if (world.snapshot?.generation !== generation || world.island !== island) {
-        await world.show_past(generation);
+        await world.past.show(generation);
         if (world.island !== island) {
           world.choose_island(island);
         }
       }
-      world.select(organism);
-      world.set_follow(true);
+      world.selection.select(organism);
+      world.selection.set_follow(true);
     });
   }
 

@@ -24,8 +24,8 @@ export class OrganismGenes {
 
   update(world: ViewedWorld, history: OrganismHistory): void {
     const names = world.gene_names, genes = history.info?.genes ?? [];
-    const weights = genes_of(world.gene_groups, "brain", names.length);
-    const free = genes_of(world.gene_groups, "free", names.length);
+    const weights = genes_of(world.feed.gene_groups, "brain", names.length);
+    const free = genes_of(world.feed.gene_groups, "free", names.length);
     const described = JSON.stringify([history.place.run_id, names, genes.length]);
     if (described !== this.#built) {
       this.#built = described;

@@ -52,7 +52,7 @@ export class OrganismLife {
     set_text(this.#action, acts ? choice_text(info) : "");
     this.#action.hidden = !acts;
     this.#follow_row.hidden = !acts;
-    this.#follow.checked = world.follow;
+    this.#follow.checked = world.selection.follow;
     set_text(this.#eaten, info ? texts.eaten(info.food_eaten ?? 0, info.poison_eaten ?? 0) : "");
     set_text(this.#body, info ? texts.body(info.radius_px ?? 0, info.mass_kg ?? 0) : "");
     this.#family.hidden = info === null;

@@ -36,7 +36,7 @@ export class OrganismOffers {
   }
 
   update(world: ViewedWorld): void {
-    set_text(this.#waiting, world.healthiest.length > 0 ? "" : world.snapshot ? texts.none_alive : texts.waiting);
+    set_text(this.#waiting, world.feed.healthiest.length > 0 ? "" : world.snapshot ? texts.none_alive : texts.waiting);
     const due_ms = this.#offered_at_ms + interval_ms - performance.now();
     if (due_ms > 0 && this.#offered.length > 0) {
       if (this.#timer === 0) {
@@ -48,9 +48,9 @@ export class OrganismOffers {
       return;
     }
     this.#offered_at_ms = performance.now();
-    this.#offered = world.healthiest.slice(0, offered_max).map((organism) => organism.id);
+    this.#offered = world.feed.healthiest.slice(0, offered_max).map((organism) => organism.id);
     this.#buttons.forEach((button, i) => {
-      const organism = world.healthiest[i];
+      const organism = world.feed.healthiest[i];
       button.hidden = organism === undefined;
       if (organism) {
         set_text(button, texts.offer(organism.id, organism.health));

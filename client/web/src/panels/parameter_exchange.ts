@@ -3,9 +3,11 @@
 import type {Event, ParameterSet, PlannedChange, SetParameters} from "../core/protocol";
 import {common_texts} from "../texts/common";
 import {parameters_texts as texts} from "../texts/parameters";
-import {ParameterEdits, when_text, type When} from "../world/parameter_edits";
+import {undo_texts} from "../texts/undo";
+import {label_of, ParameterEdits, when_text, type When} from "../world/parameter_edits";
 import type {PanelContext} from "../world/panel_context";
 import {Refusal} from "../world/server";
+import type {UndoStep} from "../world/undo";
 
 const check_delay_ms = 400; // after the last edit, before a dry run
 
@@ -59,8 +61,8 @@ export class ParameterExchange {
       this.#forget();
       changed = true;
     }
-    if (world.parameters !== null && world.parameters !== this.#set && this.edits.registry.length > 0) {
-      this.#set = world.parameters;
+    if (world.parameters.set !== null && world.parameters.set !== this.#set && this.edits.registry.length > 0) {
+      this.#set = world.parameters.set;
       this.edits.update_all(this.#set);
       changed = true;
     }
@@ -98,7 +100,12 @@ export class ParameterExchange {
 
   /** Sends the edits, or later if a change is being sent. */
   apply(when: When): void {
-    void this.#send(this.edits.apply(this.world, when));
+    const fields = this.edits.apply(this.world, when), world = this.#context.world(), transaction = this.#transaction;
+    void this.#send(fields).then((answer) => {
+      if (answer === "accepted" && when === null && transaction === this.#transaction) {
+        world.undo.add(this.#step(fields!));
+      }
+    });
   }
 
   /** Remembers that the edits are to be applied after the change that is being sent. */
@@ -106,8 +113,30 @@ export class ParameterExchange {
     this.#apply_again = true;
   }
 
-  undo(redo: boolean): void {
-    void this.#send(redo ? this.edits.redo(this.world) : this.edits.undo(this.world));
+  /** An applied change, for the undo history of the world. */
+  #step(fields: SetParameters): UndoStep {
+    const names = new Set(fields.parameters?.map(({name}) => name)), transaction = this.#transaction;
+    const labels = this.edits.registry.filter(({name}) => names.has(name)).map(label_of);
+    const is_followed = (): boolean => transaction === this.#transaction; // `edits` forgets the changes of other worlds
+    return {
+      name: undo_texts.parameters(labels),
+      can_undo: is_followed,
+      can_redo: is_followed,
+      undo: () => this.#reverse("undo"),
+      redo: () => this.#reverse("redo"),
+    };
+  }
+
+  /** Resolves with whether a value was changed: others may have changed them all since. */
+  async #reverse(verb: "undo"|"redo"): Promise<boolean> {
+    if (this.edits.busy) {
+      throw new Error(undo_texts.busy);
+    }
+    const answer = await this.#send(this.edits[verb](this.world));
+    if (answer === "refused") {
+      throw new Error(this.edits.problem);
+    }
+    return answer === "accepted";
   }
 
   /** Cancels a planned change. */
@@ -155,18 +184,19 @@ export class ParameterExchange {
     this.#view.answered();
   }
 
-  async #send(fields: SetParameters|null): Promise<void> {
+  /** fields: null: there is nothing to send. */
+  async #send(fields: SetParameters|null): Promise<"accepted"|"refused"|"nothing"> {
     this.stop_checking();
     const transaction = this.#transaction;
     this.#view.answered();
     if (fields === null) {
-      return;
+      return "nothing";
     }
     let stale = false, refused = false;
     try {
       const response = await this.#context.server.respond("set_parameters", fields);
       if (transaction !== this.#transaction) {
-        return;
+        return "nothing"; // another world is shown by now
       }
       stale = this.edits.answered({set: response.parameters ?? null});
       const count = fields.parameters?.length ?? 0;
@@ -175,7 +205,7 @@ export class ParameterExchange {
                                   texts.applied(count, response.applied_tick ?? 0));
     } catch (error) {
       if (transaction !== this.#transaction) {
-        return;
+        return "nothing"; // another world is shown by now
       }
       stale = this.edits.answered(error instanceof Refusal && error.code !== "" ? {refusal: error} : {lost: true});
       refused = true;
@@ -191,5 +221,6 @@ export class ParameterExchange {
       this.#apply_again = false;
       this.#view.edited_since();
     }
+    return refused ? "refused" : "accepted";
   }
 }

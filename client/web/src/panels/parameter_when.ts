@@ -59,7 +59,7 @@ export class ParameterWhen {
     const kind = this.#kind.value, world = this.#context.world();
     this.#number.hidden = kind === "now";
     const generation = world.snapshot?.generation ?? world.info?.generation ?? 1;
-    this.#number.value = String(kind === "generation" ? generation + 1 : world.tick + ticks_ahead);
+    this.#number.value = String(kind === "generation" ? generation + 1 : world.feed.tick + ticks_ahead);
     this.#on_change();
   }
 }

@@ -4,9 +4,11 @@
 // ParameterExchange has the edits and sends the requests, ParameterList shows the parameters. While the user edits, the
 // server checks the edits with dry runs, so that a wrong value is marked before it is applied.
 import {parameters_texts as texts} from "../texts/parameters";
+import {undo_texts} from "../texts/undo";
 import {set_enabled} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import type {Panel, PanelContext} from "../world/panel_context";
+import {undo} from "../world/undo_command";
 
 import {ParameterExchange} from "./parameter_exchange";
 import {ParameterList} from "./parameter_list";
@@ -29,11 +31,9 @@ export class ParametersPanel implements Panel {
     h("button", {class: "button", type: "button", title: texts.discard_help, onclick: () => this.#discard()},
       texts.discard);
   readonly #undo_button =
-    h("button", {class: "button", type: "button", title: texts.undo_help, onclick: () => this.#exchange.undo(false)},
-      texts.undo);
+    h("button", {class: "button", type: "button", onclick: () => void undo(this.#context, "undo")}, undo_texts.undo);
   readonly #redo_button =
-    h("button", {class: "button", type: "button", title: texts.redo_help, onclick: () => this.#exchange.undo(true)},
-      texts.redo);
+    h("button", {class: "button", type: "button", onclick: () => void undo(this.#context, "redo")}, undo_texts.redo);
   readonly #at_once = h("input", {type: "checkbox", onchange: () => this.touch()});
   readonly #reason = h("p", {class: "warning"});
   readonly #problem = h("p", {class: "error", role: "alert"});
@@ -53,7 +53,7 @@ export class ParametersPanel implements Panel {
     this.#when = new ParameterWhen(context, () => this.touch());
     this.#planned = new PlannedChanges((change) => void this.#exchange.cancel(change));
     this.element =
-      h("div", {class: "panel parameters", onkeydown: (event: KeyboardEvent) => this.#key_down(event)}, this.#reason,
+      h("div", {class: "panel parameters"}, this.#reason,
         h("div", {class: "parameters-head"},
           h("div", {class: "row"}, this.#apply_button, this.#discard_button, this.#undo_button, this.#redo_button),
           this.#problem, this.#status),
@@ -71,6 +71,7 @@ export class ParametersPanel implements Panel {
       this.#changed = false;
       this.#update();
     }
+    this.#update_undo();
   }
 
   /** subject: {search: "mutation"} */
@@ -107,20 +108,6 @@ export class ParametersPanel implements Panel {
 
   // ---- actions ----
 
-  #key_down(event: KeyboardEvent): void {
-    const key = event.key.toLowerCase();
-    const in_text =
-      event.target instanceof HTMLInputElement && event.target.type !== "range" && event.target.type !== "checkbox";
-    if (in_text || !(event.ctrlKey || event.metaKey) || event.altKey || (key !== "z" && key !== "y")) {
-      return; // a text field undoes its own changes
-    }
-    event.preventDefault();
-    event.stopPropagation();
-    if (this.why_not === "") {
-      this.#exchange.undo(key === "y" || event.shiftKey);
-    }
-  }
-
   #apply(): void {
     if (this.edits.busy) {
       this.#exchange.apply_afterwards();
@@ -151,6 +138,13 @@ export class ParametersPanel implements Panel {
     this.refresh();
   }
 
+  #update_undo(): void {
+    const may = this.why_not === "" && this.edits.known && !this.edits.busy;
+    const {next_undo, next_redo} = this.#context.world().undo;
+    set_enabled(this.#undo_button, may && next_undo !== "", undo_texts.undo_help(next_undo));
+    set_enabled(this.#redo_button, may && next_redo !== "", undo_texts.redo_help(next_redo));
+  }
+
   #update(): void {
     const {edits, why_not} = this, {plans} = this.#when;
     const may = why_not === "" && edits.known, count = edits.edit_count;
@@ -159,8 +153,6 @@ export class ParametersPanel implements Panel {
     set_text(this.#apply_button, plans ? texts.plan : texts.apply);
     set_enabled(this.#apply_button, may && count > 0 && !edits.busy, apply_help);
     set_enabled(this.#discard_button, (count > 0 || this.#list.wrong_row() !== undefined) && !edits.busy);
-    set_enabled(this.#undo_button, may && edits.can_undo);
-    set_enabled(this.#redo_button, may && edits.can_redo);
     set_enabled(this.#at_once, may && !plans);
     if (plans) {
       this.#at_once.checked = false;

@@ -99,13 +99,13 @@ export class PlotsPanel implements Panel {
   // ---- data ----
 
   #follow(): void {
-    const world = this.#context.world(), run = `${world.pane} ${world.name} ${this.#run_id()}`;
+    const world = this.#context.world(), run = `${world.feed.pane} ${world.name} ${this.#run_id()}`;
     if (run !== this.#run) {
       this.#run = run;
       this.#drawn = "";
       this.#plot.fit();
     }
-    this.#table.set_history(world.history);
+    this.#table.set_history(world.history.generations);
     this.#compare.update(world.name);
     this.#scope.update(this.#table.island_count);
     this.#need_population();
@@ -116,7 +116,7 @@ export class PlotsPanel implements Panel {
   }
 
   #subject(): Subject {
-    const {name, changes, gene_names} = this.#context.world(), {island} = this.#scope;
+    const {name, history: {changes}, gene_names} = this.#context.world(), {island} = this.#scope;
     const marks = [...marks_of(changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
     return {table: this.#table, island, name, gene_names, changes: marks};
   }
@@ -127,7 +127,7 @@ export class PlotsPanel implements Panel {
   }
 
   async #show_past(generation: number): Promise<void> {
-    await this.#context.attempt(() => this.#context.world().show_past(generation));
+    await this.#context.attempt(() => this.#context.world().past.show(generation));
   }
 
   // ---- plots ----
@@ -144,8 +144,8 @@ export class PlotsPanel implements Panel {
     const of_genes = quantity === "genes" || quantity === "selection";
     this.#genes.element.hidden = !of_genes;
     const description = JSON.stringify([
-      this.#table.revision, world.changes.length, world.history_complete, this.#comparison.revision, quantity, island,
-      this.#genes.described, window, world.gene_names.length
+      this.#table.revision, world.history.changes.length, world.history.is_complete, this.#comparison.revision,
+      quantity, island, this.#genes.described, window, world.gene_names.length
     ]);
     if (description !== this.#drawn) {
       this.#drawn = description;
@@ -167,7 +167,7 @@ export class PlotsPanel implements Panel {
   }
 
   #empty_text(): string {
-    return !this.#context.world().history_complete                          ? texts.loading :
+    return !this.#context.world().history.is_complete                       ? texts.loading :
       this.#tabs.chosen === "selection" && this.#table.generation_count > 0 ? texts.from_second :
                                                                               texts.none_ended;
   }
@@ -185,7 +185,7 @@ export class PlotsPanel implements Panel {
   }
 
   #save_csv(): void {
-    const {history, gene_names} = this.#context.world();
+    const {history: {generations: history}, gene_names} = this.#context.world();
     save_file(new Blob([history_csv(history, gene_names)], {type: "text/csv"}), `${this.#file_name("history")}.csv`);
   }
 

@@ -89,5 +89,5 @@ export class GeneChoice {
 }
 
 function groups_of(world: ViewedWorld): string[] {
-  return world.gene_groups.length === world.gene_names.length ? world.gene_groups : [];
+  return world.feed.gene_groups.length === world.gene_names.length ? world.feed.gene_groups : [];
 }

@@ -28,13 +28,13 @@ export class GeneHistogram {
     }
     if (needed && this.#release === null) {
       this.#world = world;
-      this.#release = world.need_population();
+      this.#release = world.population.need();
     }
   }
 
   /** gene: empty: no histogram is shown. */
   update(world: ViewedWorld, gene: string): void {
-    const {population} = world;
+    const {columns: population} = world.population;
     this.element.hidden = gene === "";
     if (gene === "" || (population === this.#drawn && gene === this.#drawn_gene)) {
       return;

@@ -38,7 +38,7 @@ export class ViewPanel implements Panel {
     interpolate: this.#check("interpolate"),
   };
   readonly #follow: HTMLInputElement =
-    h("input", {type: "checkbox", onchange: () => this.#context.world().set_follow(this.#follow.checked)});
+    h("input", {type: "checkbox", onchange: () => this.#context.world().selection.set_follow(this.#follow.checked)});
   readonly #follow_row = h("label", {class: "check"}, this.#follow, texts.follow);
   readonly #follow_hint = h("p", {class: "hint"}, texts.select_first);
   readonly #lineage_hint = h("p", {class: "hint"}, texts.lineages);
@@ -83,9 +83,9 @@ export class ViewPanel implements Panel {
       this.#checks[name].checked = look[name];
     }
     this.#lineage_hint.hidden = look.colour_by !== "lineage";
-    this.#follow_row.hidden = world.selected === null;
-    this.#follow_hint.hidden = world.selected !== null;
-    this.#follow.checked = world.follow;
+    this.#follow_row.hidden = world.selection.id === null;
+    this.#follow_hint.hidden = world.selection.id !== null;
+    this.#follow.checked = world.selection.follow;
   }
 
   get #look(): Look {

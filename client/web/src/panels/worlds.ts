@@ -105,7 +105,7 @@ export class WorldsPanel implements Panel {
       ...listed.map((info) => {
         const live = info.name === world.shown && world.snapshot;
         return row(info.name, [
-          state_word(live ? world.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
+          state_word(live ? world.control.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
           with_separators(live ? live.generation : info.generation ?? 0),
           with_separators(live ? live.tick : info.tick ?? 0),
           info.slowed ? texts.slower(speed_text(info.speed)) : speed_text(info.speed)
@@ -139,7 +139,7 @@ export class WorldsPanel implements Panel {
       this.#context.notify(why || common_texts.no_world);
       return;
     }
-    set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.tick));
+    set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.feed.tick));
     set_text(this.#fork_error, "");
     this.#fork_name.value = unused_name(world.name, this.#context.server.world_names);
     this.#confirm.hidden = true;

@@ -27,15 +27,15 @@ export class FitnessCurve {
 
   /** Draws the history of the world if it has changed. */
   update(world: ViewedWorld): void {
-    this.#table.set_history(world.history);
+    this.#table.set_history(world.history.generations);
     if (
-      this.#table.revision === this.#revision && world.changes === this.#changes &&
-      world.changes.length === this.#change_count) {
+      this.#table.revision === this.#revision && world.history.changes === this.#changes &&
+      world.history.changes.length === this.#change_count) {
       return;
     }
     this.#revision = this.#table.revision;
-    this.#changes = world.changes;
-    this.#change_count = world.changes.length;
+    this.#changes = world.history.changes;
+    this.#change_count = world.history.changes.length;
     const x = this.#table.column(null, "generation");
     const line = (name: string, column: Column, colour: SeriesColour, dash: number[]): Series => {
       const raw = this.#table.column(null, column);
@@ -61,7 +61,7 @@ export class FitnessCurve {
       counted_x: true,
       from_zero: true,
       smoothed: plot_texts.mean_of(generations_in_mean),
-      marks: known ? [{marks: marks_of(world.changes), name: ""}] : [],
+      marks: known ? [{marks: marks_of(world.history.changes), name: ""}] : [],
       note_end: plot_texts.click_shows,
     });
   }

@@ -34,6 +34,8 @@ export const key_help = {
 /** What is done, and what it does. Several names of one key are divided by three blanks. */
 export const gesture_help: readonly[string, string][] = [
   ["Ctrl+C", "copy a link to this moment"],
+  ["Ctrl+Z", "undo your last change of parameters, or what you placed last"],
+  ["Ctrl+Shift+Z   Ctrl+Y", "do again what was undone"],
   ["Wheel   pinch", "zoom at the pointer"],
   ["Drag", "move the view"],
   ["Click   tap", "select an organism; on empty space: select none; or use the chosen tool"],

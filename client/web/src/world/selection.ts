@@ -1,0 +1,124 @@
+// Selection: the selected organism of a pane. It ends with its generation, because the next one uses the same ids, and
+// begins again when its generation is shown again.
+import type {OrganismInfo} from "../core/protocol";
+import type {SnapshotInfo} from "../core/snapshot";
+
+import type {Changes} from "./changes";
+import type {SnapshotFeed} from "./feed";
+import type {Refusal} from "./server";
+
+type Place = {
+  x_px: number; y_px: number; health: number
+};
+
+export class Selection {
+  id: number|null = null; // of the selected organism
+  follow = false; // whether the camera follows it
+  at: Place|null = null; // in the drawn snapshot
+  info: OrganismInfo|null = null; // polled 4 times a second
+  #pending = false;
+  #info_tick = -1;
+  #remembered: {run_id: string; island: number; generation: number; id: number; follow: boolean}|null =
+    null; // what was selected last
+  readonly #feed: SnapshotFeed;
+  readonly #changes: Changes;
+  readonly #on_change: () => void;
+
+  /** on_change: called at once after the user has selected another organism. */
+  constructor(feed: SnapshotFeed, changes: Changes, on_change: () => void) {
+    this.#feed = feed;
+    this.#changes = changes;
+    this.#on_change = on_change;
+  }
+
+  select(organism: number|null): void {
+    if (organism === this.id) {
+      return;
+    }
+    this.id = organism;
+    this.info = null;
+    this.#info_tick = -1;
+    this.follow = organism !== null && this.follow;
+    this.#remember();
+    this.post();
+    this.#on_change();
+    this.#changes.notify();
+  }
+
+  set_follow(follow: boolean): void {
+    this.follow = follow && this.id !== null;
+    this.#remember();
+    this.post();
+    this.#changes.notify();
+  }
+
+  /** Ends the selection, because another island or another run is shown. */
+  forget(): void {
+    this.id = this.at = this.info = null;
+    this.follow = false;
+  }
+
+  post(): void {
+    const {server, pane} = this.#feed;
+    server.post({kind: "select", pane, organism: this.id, hovered: null, follow: this.follow});
+  }
+
+  /** Call it before the feed takes the snapshot. */
+  follow_generation(next: SnapshotInfo): void {
+    const remembered = this.#remembered, before = this.#feed.snapshot;
+    const again = remembered !== null && remembered.run_id === next.run_id && remembered.island === this.#feed.island &&
+      remembered.generation === next.generation;
+    const ends = this.id !== null && before !== null && before.generation !== next.generation;
+    if (again ? this.id === null : ends) {
+      this.id = again ? remembered.id : null;
+      this.follow = again && remembered.follow;
+      this.at = this.info = null;
+      this.#info_tick = -1;
+      this.post();
+    }
+  }
+
+  /** Call it after the feed has taken a snapshot. */
+  take(at: Place|null): void {
+    if (this.id !== null && this.#remembered === null) { // it was selected before the first snapshot
+      this.#remember();
+    }
+    this.at = this.id === null ? null : at;
+  }
+
+  #remember(): void {
+    const {snapshot, island} = this.#feed, {id, follow} = this;
+    this.#remembered =
+      id === null || !snapshot ? null : {run_id: snapshot.run_id, island, generation: snapshot.generation, id, follow};
+  }
+
+  /** Reads `info` if a newer snapshot is drawn. */
+  poll(tick: number): void {
+    const organism = this.id, {world, island, server} = this.#feed;
+    if (organism === null || this.#pending || tick === this.#info_tick) {
+      return;
+    }
+    this.#pending = true;
+    this.#info_tick = tick;
+    const is_selected = (): boolean => organism === this.id && world === this.#feed.world;
+    server.request("get_organism", {world, island, organism})
+      .then(
+        (info) => {
+          if (is_selected() && island === this.#feed.island) {
+            this.info = info;
+            this.#changes.notify();
+          }
+        },
+        (error: Refusal) => {
+          if (error.reason === "REASON_ORGANISM_NOT_FOUND" && is_selected()) {
+            this.select(null);
+          }
+        })
+      .finally(() => {
+        this.#pending = false;
+        if (organism !== this.id) {
+          this.#on_change();
+        }
+      });
+  }
+}
