@@ -32,7 +32,7 @@ test("a wrong file names the line, what it contains and what is allowed", () => 
     [`${heading}\n0,0,1,2,3,4,5\n`, /^line 2: got "0,0,1,2,3,4,5", allowed: the numbers of island and organism, and 6 genes$/],
     [`${heading}\n0,0,1,2,3,4,5,nan\n`, /^line 2: /],
     [`${heading}\n0,0,1,2,3,4,5,1e39\n`, /^line 2: /],
-    [`${heading}\n0,0,${row}\n\n0,1,${row}\n`, /^line 3: got "", allowed/],
+    [`${heading}\n"0,0,${row}\n`, /^line 2: a cell in quotation marks does not end as it must$/],
     [`${heading}\n0,1,${row}\n`, /allowed: organism 0 of island 0/],
     [`${heading}\n0,0,${row}\n2,0,${row}\n`, /^line 3: .*, allowed: organism 1 of island 0, or organism 0 of the next island$/]]) {
     assert.match(page.read_population(text), problem);

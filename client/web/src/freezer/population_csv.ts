@@ -6,6 +6,7 @@
 //
 // The columns of further genes follow. Islands and organisms are numbered from 0, in order. Each gene is a text that
 // parses to the same 32-bit float.
+import {csv_line, csv_records, CsvError} from "../core/csv";
 import {freezer_texts} from "../texts/freezer";
 
 export interface Population {
@@ -32,21 +33,26 @@ export function genes_of_organism(population: Population, island: number, organi
 
 /** Returns the population in a file; or a sentence that names the wrong line, without a full stop. */
 export function read_population(text: string): Population|string {
-  const lines = text.replace(/^\ufeff/, "").split(/\r?\n/);
-  if (lines[lines.length - 1] === "") {
-    lines.pop();
-  }
-  const wrong = (i: number, allowed: string): string =>
-    freezer_texts.wrong_line(i + 1, (lines[i] ?? "").slice(0, shown_characters_max), allowed);
-  const [first, second, ...gene_names] = (lines[0] ?? "").split(",");
-  const has_heading =
-    first === "island" && second === "organism" && body_genes.every((gene, i) => gene === gene_names[i]);
-  if (!has_heading || gene_names.length > genes_max || gene_names.includes("")) {
-    return wrong(0, freezer_texts.heading(["island", "organism", ...body_genes].join(",")));
-  }
   const islands: number[][] = [];
-  for (let i = 1; i < lines.length; ++i) {
-    const cells = lines[i]!.split(","), genes: number[] = [];
+  let gene_names: string[]|null = null;
+  for (const record of csv_records(text)) {
+    if (record instanceof CsvError) {
+      return freezer_texts.not_csv(record.line);
+    }
+    const {line, cells} = record;
+    const wrong = (allowed: string): string =>
+      freezer_texts.wrong_line(line, csv_line(cells).slice(0, shown_characters_max), allowed);
+    if (gene_names === null) {
+      const [island, organism, ...names] = cells;
+      const has_heading =
+        island === "island" && organism === "organism" && body_genes.every((gene, i) => gene === names[i]);
+      if (!has_heading || names.length > genes_max || names.includes("")) {
+        return wrong(freezer_texts.heading(csv_line(["island", "organism", ...body_genes])));
+      }
+      gene_names = names;
+      continue;
+    }
+    const genes: number[] = [];
     const are_numbers = /^\d+$/.test(cells[0]!) && /^\d+$/.test(cells[1] ?? "");
     for (let gene = 2; are_numbers && gene < cells.length; ++gene) {
       const value = number_pattern.test(cells[gene]!) ? Math.fround(Number(cells[gene])) : NaN;
@@ -55,7 +61,7 @@ export function read_population(text: string): Population|string {
       }
     }
     if (!are_numbers || cells.length !== gene_names.length + 2 || genes.length !== gene_names.length) {
-      return wrong(i, freezer_texts.row(gene_names.length));
+      return wrong(freezer_texts.row(gene_names.length));
     }
     const island = Number(cells[0]), organism = Number(cells[1]);
     if (island === islands.length && organism === 0) {
@@ -63,11 +69,14 @@ export function read_population(text: string): Population|string {
     }
     const last = Math.max(islands.length - 1, 0), next = (islands[last]?.length ?? 0) / gene_names.length;
     if (islands.length === 0 || island !== last || organism !== next) {
-      return wrong(i, freezer_texts.order(next, last));
+      return wrong(freezer_texts.order(next, last));
     }
     for (const gene of genes) {
       islands[last]!.push(gene);
     }
+  }
+  if (gene_names === null) {
+    return freezer_texts.wrong_line(1, "", freezer_texts.heading(csv_line(["island", "organism", ...body_genes])));
   }
   return islands.length === 0 ? freezer_texts.no_organism :
                                 {gene_names, islands: islands.map((genes) => Float32Array.from(genes))};
@@ -76,11 +85,11 @@ export function read_population(text: string): Population|string {
 /** Returns the text of a file with these genes. */
 export function population_text(population: Population): string {
   const {gene_names, islands} = population, count = gene_names.length;
-  const lines = [["island", "organism", ...gene_names].join(",")];
+  const lines = [csv_line(["island", "organism", ...gene_names])];
   islands.forEach((genes, island) => {
     for (let organism = 0; organism * count < genes.length; ++organism) {
       const texts = Array.from(genes.subarray(organism * count, (organism + 1) * count), float_text);
-      lines.push([island, organism, ...texts].join(","));
+      lines.push(csv_line([island, organism, ...texts]));
     }
   });
   return lines.join("\n") + "\n";
