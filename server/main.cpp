@@ -17,8 +17,8 @@
 namespace evod {
 namespace {
 
-/// Runs the command that the user has given, and returns its exit status. Refuses subcommands that would do the same work
-/// in each process that mpirun has started.
+/// Runs the command that the user has given, and returns its exit status. Refuses subcommands that would do the same
+/// work in each process that mpirun has started.
 int run(command_line::Command& app) {
     const command_line::Command* const command = app.given_command();
     const std::string name = command == nullptr ? "" : command->name();

@@ -63,7 +63,8 @@ inline bool worlds_wait(const evod::v1::Storage& storage) {
 /// Returns how many islands of a world that waits for fitness have been rated: "0 of 2 islands rated".
 std::string to_text(const evod::v1::AwaitedFitness& awaited, std::uint32_t island_count);
 
-/// Returns the message for people: a sentence, then lines about fields. Programs read the code, the reason and the fields.
+/// Returns the message for people: a sentence, then lines about fields. Programs read the code, the reason and the
+/// fields.
 ///
 /// name_of  the client's own name for the path of a field, such as "set_parameters.mutation_chance"; empty: the path.
 std::string to_text(const evod::v1::Status& status,

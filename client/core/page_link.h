@@ -25,8 +25,8 @@ PageMoment moment_of(const evod::v1::WorldInfo& world);
 /// Whether a URL can contain all characters of a text, which may come from a server.
 bool fits_into_url(std::string_view text);
 
-/// The page of a server, such as "http://lab:7745/". Empty if there is none that this client can reach, or if its host is
-/// not one.
+/// The page of a server, such as "http://lab:7745/". Empty if there is none that this client can reach, or if its host
+/// is not one.
 ///
 /// server, tls  how this client is connected.
 std::string page_of(const evod::v1::Welcome& welcome, const Endpoint& server, bool tls);

@@ -159,8 +159,8 @@ void ProtocolState::end_session(Ending ending, TimePoint now) {
         if (status_.connected_count > 0 && !lost_since_) {
             lost_since_ = now;
         }
-        // The server ended the session because it is full: another attempt soon would take the place of another client, or
-        // of another session of the same user.
+        // The server ended the session because it is full: another attempt soon would take the place of another client,
+        // or of another session of the same user.
         backoff_ = ending.late ? options_.backoff_max : backoff_;
         // Waits are random, so that the clients of a server do not all reconnect at the same moment.
         const auto spread = std::uniform_real_distribution{0.5, 1.0}(jitter_);

@@ -59,8 +59,8 @@ class ProtocolState {
     // ---- the TCP connection
     void opened(TimePoint now);
     void received(std::span<const std::byte> bytes, TimePoint now);
-    /// Call when the TCP connection was lost or could not be opened. `ending` applies if the server has not announced its
-    /// shutdown.
+    /// Call when the TCP connection was lost or could not be opened. `ending` applies if the server has not announced
+    /// its shutdown.
     void lost(Ending ending, TimePoint now);
     /// Ends attempts to connect and requests whose time limit has passed. Begins the next attempt to connect when it is
     /// due.

@@ -110,8 +110,8 @@ void RequestQueue::give_up(const Error& error) {
 
 std::string RequestQueue::take_frames() {
     std::string frames;
-    // The server counts a request until it has sent the complete answer. The answer may arrive here before the server stops
-    // counting the request.
+    // The server counts a request until it has sent the complete answer. The answer may arrive here before the server
+    // stops counting the request.
     const std::size_t allowed = limits_.requests_in_flight_max() > 0 ? limits_.requests_in_flight_max() : 32;
     const std::size_t most = std::max<std::size_t>(allowed / 2, 1);
     for (const bool first : {true, false}) {

@@ -51,18 +51,19 @@ class RequestQueue {
 
     /// Call it when the server has sent its Welcome.
     void begin_session(const evod::v1::Limits& limits);
-    /// Numbers a request and appends it. If the request cannot be sent, its outcome is an error. If it names a replay that
-    /// was opened in an earlier session, its outcome is the refusal NOT_FOUND.
+    /// Numbers a request and appends it. If the request cannot be sent, its outcome is an error. If it names a replay
+    /// that was opened in an earlier session, its outcome is the refusal NOT_FOUND.
     void add(evod::v1::Request request, Pending pending);
-    /// Returns whether a name is that of a replay of an earlier session. While there is no session, that holds for each.
+    /// Returns whether a name is that of a replay of an earlier session. While there is no session, that holds for
+    /// each.
     bool has_ended(const std::string& replay) const {
         return !replay.empty() && (lost_ || ended_replays_.contains(replay));
     }
     /// Returns whether a request for this subscription is unanswered.
     bool has_request_for(SubscriptionHandle subscription) const;
-    /// Finishes the request that this response answers. If that request was for a subscription, returns the subscription.
-    /// Ignores responses to unknown requests and to requests that were not sent in this session. Closes a replay whose
-    /// OpenReplay has timed out.
+    /// Finishes the request that this response answers. If that request was for a subscription, returns the
+    /// subscription. Ignores responses to unknown requests and to requests that were not sent in this session. Closes a
+    /// replay whose OpenReplay has timed out.
     std::optional<AnsweredSubscription> answer(const evod::v1::Response& response);
     /// Finishes all requests whose deadline has passed. Appends `why` to each error.
     void expire(TimePoint now, const std::string& why);

@@ -61,12 +61,14 @@ class Caller {
     /// what  what the server cannot do without the feature: "plan changes of parameters".
     void need(const std::string& feature, const std::string& what) const;
 
-    /// Throws Stop if the server has refused a subscription, for example after a reconnection because the world is gone.
+    /// Throws Stop if the server has refused a subscription, for example after a reconnection because the world is
+    /// gone.
     void require_subscribed(core::SubscriptionHandle subscription) const;
 
     core::Connection& connection() { return *connection_; }
     const v1::Welcome& welcome() const { return welcome_; }
-    /// The address of the server's page, such as "http://lab:7745/". Empty if there is none that this machine can reach.
+    /// The address of the server's page, such as "http://lab:7745/". Empty if there is none that this machine can
+    /// reach.
     const std::string& page() const { return page_; }
     /// The host of the page if it is another one than that of --server; else empty.
     const std::string& other_page_host() const { return other_page_host_; }

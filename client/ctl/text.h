@@ -46,8 +46,8 @@ std::string in_color(const std::string& text, Color color);
 /// Whether in_color() adds escape sequences from now on. It does not at first.
 void use_colors(bool used);
 
-/// Makes text from a server safe to print on a terminal: replaces characters that control it or change the direction of text by '?',
-/// except line breaks. Keeps the sequences of in_color().
+/// Makes text from a server safe to print on a terminal: replaces characters that control it or change the direction of
+/// text by '?', except line breaks. Keeps the sequences of in_color().
 std::string visible(std::string utf8);
 
 using core::duration;

@@ -63,8 +63,8 @@ struct BaselineView {
 /// Creates a baseline in which all displacements are 0.
 Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 
-/// Returns whether `next` can be encoded as a delta against `base`. All boxes of a whole island must be the same, except
-/// for the positions of crates. If both have organisms, the organisms of both or of neither must have headings.
+/// Returns whether `next` can be encoded as a delta against `base`. All boxes of a whole island must be the same,
+/// except for the positions of crates. If both have organisms, the organisms of both or of neither must have headings.
 bool follows(const QuantisedView& next, const QuantisedView& base);
 
 /// Returns the baseline of `next`, which is `ticks` ticks after `base`. Encoder and decoder both compute it.

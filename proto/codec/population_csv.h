@@ -3,7 +3,8 @@
 //   island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius
 //   0,0,103.2,97.5,…
 //
-// The columns of further genes follow if the chromosomes have more than the six body genes. Islands and organisms are numbered from 0, in order. Each gene is the shortest text that parses to the same float.
+// The columns of further genes follow if the chromosomes have more than the six body genes. Islands and organisms are
+// numbered from 0, in order. Each gene is the shortest text that parses to the same float.
 #pragma once
 
 #include "proto/codec/result.h"

@@ -11,8 +11,8 @@
 namespace evod::command_line {
 namespace {
 
-// Bash splits COMP_WORDS at '=' and ':'. The script therefore ignores COMP_WORDS and splits the line at blanks. Readline
-// replaces only the text after the last '=', so the script removes the text before it from each completion.
+// Bash splits COMP_WORDS at '=' and ':'. The script therefore ignores COMP_WORDS and splits the line at blanks.
+// Readline replaces only the text after the last '=', so the script removes the text before it from each completion.
 constexpr std::string_view bash_script = R"(# Completion of PROGRAM for bash. Use it: source <(PROGRAM complete bash)
 _PROGRAM() {
     local line=${COMP_LINE:0:COMP_POINT} words word current

@@ -39,8 +39,8 @@ inline const std::vector<std::string> shells{"bash", "zsh", "fish"};
 /// Returns the script for a shell.
 std::string completion_script(const std::string& shell, const std::string& program);
 
-/// Adds the commands `help [COMMAND]`, `complete SHELL` and `man`, which print text that is generated from the tables of
-/// the program. The program must not be moved afterwards.
+/// Adds the commands `help [COMMAND]`, `complete SHELL` and `man`, which print text that is generated from the tables
+/// of the program. The program must not be moved afterwards.
 void add_help_commands(Command& program);
 
 /// If the command line is `PROGRAM complete -- WORDS…`, prints the candidates and returns true.

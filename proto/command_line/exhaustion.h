@@ -1,5 +1,6 @@
-// Exhaustion: ends a client program with one line and an exit status if memory or threads run out on any of its threads.
-// Without this, the C++ library would abort the program. The server has a handler of its own, in server/commands/termination.
+// Exhaustion: ends a client program with one line and an exit status if memory or threads run out on any of its
+// threads. Without this, the C++ library would abort the program. The server has a handler of its own, in
+// server/commands/termination.
 //
 // Threads      call once, in main.
 #pragma once

@@ -1,8 +1,8 @@
 // Unfinished file: writes a file that appears under its name only when it is complete.
 //
-// The text goes to NAME.part, which is renamed to NAME at the end. SIGINT, SIGTERM and SIGHUP delete NAME.part before they
-// end the program, unless the program handles them itself. After SIGKILL, NAME.part remains, and the next file with this
-// name replaces it. A pipe or a device, such as /dev/stdout, is written directly.
+// The text goes to NAME.part, which is renamed to NAME at the end. SIGINT, SIGTERM and SIGHUP delete NAME.part before
+// they end the program, unless the program handles them itself. After SIGKILL, NAME.part remains, and the next file
+// with this name replaces it. A pipe or a device, such as /dev/stdout, is written directly.
 //
 // Threads  one at a time for each object.
 #pragma once
@@ -15,9 +15,9 @@
 
 namespace evod::files {
 
-/// Files and empty folders that SIGINT, SIGTERM and SIGHUP delete before they end the program, as long as the object exists.
-/// Folders are deleted after all files. Objects of this type and unfinished files together can have 32 names; further ones
-/// are not deleted.
+/// Files and empty folders that SIGINT, SIGTERM and SIGHUP delete before they end the program, as long as the object
+/// exists. Folders are deleted after all files. Objects of this type and unfinished files together can have 32 names;
+/// further ones are not deleted.
 class DeletedBySignals {
   public:
     explicit DeletedBySignals(const std::vector<std::string>& paths);

@@ -1,7 +1,7 @@
 // CSV: tables as text, by RFC 4180. The only reader and the only writer of cells in C++.
 //
-// A cell may stand in quotation marks; two of them inside are one. Lines may end with LF or CRLF. A byte order mark at the
-// beginning, which spreadsheet programs write, is skipped.
+// A cell may stand in quotation marks; two of them inside are one. Lines may end with LF or CRLF. A byte order mark at
+// the beginning, which spreadsheet programs write, is skipped.
 //
 // Threads      none.
 #pragma once

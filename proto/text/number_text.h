@@ -7,6 +7,8 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace evod::text {
@@ -42,6 +44,15 @@ inline std::string rounded(double value, int digits) {
 /// Formats a number with `decimals` decimals, at most 80: fixed(2.345, 1) is "2.3".
 inline std::string fixed(double value, int decimals) {
     return formatted_number(value, std::chars_format::fixed, decimals);
+}
+
+/// "12,345".
+inline std::string with_separators(std::uint64_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t end = text.size(); end > 3; end -= 3) {
+        text.insert(end - 3, 1, ',');
+    }
+    return text;
 }
 
 } // namespace evod::text

@@ -14,8 +14,8 @@ namespace evod::access {
 struct TlsFiles {
     std::string certificate; // PEM file with the certificate chain
     std::string key;         // PEM file; only its owner and group may be able to read it
-    // PEM file with certificate authorities, one of which must have signed the certificate of a client; nullopt: clients
-    // need no certificate
+    // PEM file with certificate authorities, one of which must have signed the certificate of a client; nullopt:
+    // clients need no certificate
     std::optional<std::string> client_ca = {};
 };
 

@@ -17,8 +17,8 @@ std::string_view name_of(Instructions instructions);
 /// Returns the widest vector instructions that this processor has.
 Instructions widest_instructions();
 
-/// Returns the instructions that evod uses unless others are selected: the widest, but no AVX-512 on processors that may
-/// reduce their clock for it.
+/// Returns the instructions that evod uses unless others are selected: the widest, but no AVX-512 on processors that
+/// may reduce their clock for it.
 Instructions default_instructions();
 
 /// Returns the names of all instructions that this processor has, in ascending order of width.

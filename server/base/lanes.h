@@ -1,5 +1,5 @@
-// Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels. A kernel is a file that is compiled once for
-// each set of instructions: for every processor, for AVX2 and for AVX-512.
+// Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels. A kernel is a file that is compiled once
+// for each set of instructions: for every processor, for AVX2 and for AVX-512.
 //
 // Everything in this file is in an unnamed namespace, and kernels include no other inline code. If the copies of a
 // kernel shared an inline function, the linker would keep only one copy of that function. The copy might contain

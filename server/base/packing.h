@@ -1,8 +1,8 @@
 // Packing: values as bytes, for processes that run the same program on the same kind of machine (exchange.h), and for
 // parts of files whose layout does not change.
 //
-// Numbers, and structs of numbers, are packed as they are in memory; strings and vectors as the number of their elements
-// and the elements; variants as the index of their alternative and its value; other structs field by field.
+// Numbers, and structs of numbers, are packed as they are in memory; strings and vectors as the number of their
+// elements and the elements; variants as the index of their alternative and its value; other structs field by field.
 #pragma once
 
 #include "server/base/assert.h"
@@ -19,8 +19,8 @@
 
 namespace evod::base {
 
-/// The fields of a struct that is not packed as it is in memory. The struct declares them once, for both directions, in a
-/// static function; `route` is const while it is packed:
+/// The fields of a struct that is not packed as it is in memory. The struct declares them once, for both directions, in
+/// a static function; `route` is const while it is packed:
 ///
 ///     static void visit(auto& route, auto&& each) { each(route.from, route.stops); }
 ///

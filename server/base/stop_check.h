@@ -1,5 +1,5 @@
-// Stop check: long work calls it often, for example after every tick, and ends if the answer is true. The call may take a
-// while, because the work of others may have its turn meanwhile.
+// Stop check: long work calls it often, for example after every tick, and ends if the answer is true. The call may take
+// a while, because the work of others may have its turn meanwhile.
 #pragma once
 
 #include <functional>

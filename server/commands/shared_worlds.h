@@ -1,5 +1,5 @@
-// Shared worlds: the processes that mpirun has started share the worlds of `evod run` and of the server. Rank 0 runs the
-// command: it alone reads and writes files, prints, and serves clients. The others simulate islands for it.
+// Shared worlds: the processes that mpirun has started share the worlds of `evod run` and of the server. Rank 0 runs
+// the command: it alone reads and writes files, prints, and serves clients. The others simulate islands for it.
 //
 // Threads  the main thread of each process.
 #pragma once

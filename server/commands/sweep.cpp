@@ -245,7 +245,8 @@ Result<Executed> add_up(const Result<std::size_t>& made, double busy_s, runtime:
     return sum;
 }
 
-/// Executes the runs and prints their duration. Each process executes some of them. Returns the number of finished runs.
+/// Executes the runs and prints their duration. Each process executes some of them. Returns the number of finished
+/// runs.
 Result<std::size_t> execute_runs(const std::vector<std::size_t>& runs, const Sweep& sweep, const SweepFolder& folder,
                                  const SweepOptions& options, runtime::Processes& processes) {
     const std::size_t jobs =

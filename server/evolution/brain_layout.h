@@ -47,8 +47,8 @@ struct BrainGenes {
 };
 BrainGenes brain_genes(const Parameters& parameters);
 
-/// Returns a name for each weight, in chromosome order: "hidden3<food_bearing", "hidden3<bias", "turn<hidden3". The first
-/// hidden neuron is hidden1.
+/// Returns a name for each weight, in chromosome order: "hidden3<food_bearing", "hidden3<bias", "turn<hidden3". The
+/// first hidden neuron is hidden1.
 std::vector<std::string> brain_gene_names(const Parameters& parameters);
 
 } // namespace evod::evolution

@@ -113,15 +113,15 @@ class Descent {
         return by.mutate(mutation_, genes, mutation);
     }
 
-    /// Draws the mixture of the children of a pair; `mixture` must be new. Returns false and does not change it if there is
-    /// no crossover.
+    /// Draws the mixture of the children of a pair; `mixture` must be new. Returns false and does not change it if
+    /// there is no crossover.
     bool draw_mixture(std::uint32_t pair_index, Mixture<extent>& mixture) const {
         base::RandomStream random{crossover_key_, pair_index};
         return crossover_.draw(mixture, random);
     }
 
-    /// Writes the genes of a child to `child`. `second_share` is that of the pair's mixture; `place` is the child's index
-    /// in the next generation. Returns the number of clamped genes.
+    /// Writes the genes of a child to `child`. `second_share` is that of the pair's mixture; `place` is the child's
+    /// index in the next generation. Returns the number of clamped genes.
     template <class By>
     unsigned make_child(const Inheritance<extent>& of, double second_share, std::uint32_t place,
                         std::span<float, extent> child, By&& by) const {

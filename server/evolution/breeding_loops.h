@@ -1,7 +1,8 @@
 // Breeding loops: apply the steps of breeding to all organisms of an island.
 //
-// The loops are compiled twice: next_generation.cpp contains the code for chromosomes of the genes of the body alone, and
-// next_generation_wide.cpp that for any number of genes. In one file, GCC would inline fewer functions into the faster loop.
+// The loops are compiled twice: next_generation.cpp contains the code for chromosomes of the genes of the body alone,
+// and next_generation_wide.cpp that for any number of genes. In one file, GCC would inline fewer functions into the
+// faster loop.
 //
 // Threads  none of its own; the executor processes pairs and survivors in blocks.
 #pragma once

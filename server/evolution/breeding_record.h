@@ -1,6 +1,6 @@
 // Breeding record: shows how a generation was bred. It contains the wheel and its spins, the tournaments and their
-// contestants, the pairs, the crossover of each child and every changed gene. It is computed afterwards from the same inputs by
-// the same steps (breeding.h); breeding itself records nothing.
+// contestants, the pairs, the crossover of each child and every changed gene. It is computed afterwards from the same
+// inputs by the same steps (breeding.h); breeding itself records nothing.
 //
 // Threads      none of its own.
 // Determinism  the descendants equal those of next_generation() bit for bit.

@@ -38,8 +38,8 @@ inline BodyGenes body_genes(const GeneMatrix& genes, std::uint32_t organism) {
     return BodyGenes{column(genes, organism).data()};
 }
 
-/// Returns the genes of `range`. A chromosome of a fixed number of genes has only the genes of the body, so it is returned
-/// whole.
+/// Returns the genes of `range`. A chromosome of a fixed number of genes has only the genes of the body, so it is
+/// returned whole.
 template <class T, std::size_t extent>
 std::span<T, extent> part_of(std::span<T, extent> genes, GeneRange range) {
     if constexpr (extent == std::dynamic_extent) {
@@ -49,9 +49,9 @@ std::span<T, extent> part_of(std::span<T, extent> genes, GeneRange range) {
     }
 }
 
-/// Divides the genes of a chromosome into blocks of body_gene_count genes, for loops over organisms that are fast if the
-/// number of genes is a constant. Calls visit(first) with the index of each block's first gene. The last block may contain
-/// genes of the block before it.
+/// Divides the genes of a chromosome into blocks of body_gene_count genes, for loops over organisms that are fast if
+/// the number of genes is a constant. Calls visit(first) with the index of each block's first gene. The last block may
+/// contain genes of the block before it.
 template <class Visit>
 void for_each_block_of_genes(unsigned gene_count, const Visit& visit) {
     unsigned first = 0;

@@ -24,8 +24,8 @@ unsigned cut_count(const Parameters& parameters) {
     return 0;
 }
 
-/// Returns the number of sets of `chosen` out of `count` elements. For the numbers of genes and cuts that the parameters
-/// allow, it is below 2^53.
+/// Returns the number of sets of `chosen` out of `count` elements. For the numbers of genes and cuts that the
+/// parameters allow, it is below 2^53.
 std::uint64_t set_count(std::uint64_t count, std::uint64_t chosen) {
     std::uint64_t sets = 1;
     for (std::uint64_t i = 0; i < chosen; ++i) {

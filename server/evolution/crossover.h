@@ -1,8 +1,9 @@
 // Crossover: mixes the genes of two parents into two children.
 //
-// Every method except blend draws one mask per pair: the genes that the first child inherits from the second parent. The
-// second child has the complementary mask, so no gene of either parent is lost. Blend draws one weight per pair: every
-// gene of the first child is a weighted mean of the parents' genes, and the second child has the complementary weights.
+// Every method except blend draws one mask per pair: the genes that the first child inherits from the second parent.
+// The second child has the complementary mask, so no gene of either parent is lost. Blend draws one weight per pair:
+// every gene of the first child is a weighted mean of the parents' genes, and the second child has the complementary
+// weights.
 // Source  De Jong 1975 and Eshelman, Caruana & Schaffer 1989 (cut points); Syswerda 1989, "Uniform crossover in genetic
 //         algorithms"; Michalewicz 1996, "Genetic Algorithms + Data Structures = Evolution Programs" (arithmetic
 //         crossover).
@@ -20,8 +21,8 @@
 
 namespace evod::evolution {
 
-/// How the genes of a pair are mixed into its first child. A new object describes a copy of the first parent. The second
-/// child has the complement of the mask and the same share.
+/// How the genes of a pair are mixed into its first child. A new object describes a copy of the first parent. The
+/// second child has the complement of the mask and the same share.
 template <std::size_t extent = std::dynamic_extent>
 struct Mixture {
     explicit Mixture(unsigned gene_count) : from_second{gene_count} {}
@@ -43,8 +44,8 @@ class Crossover {
     /// single_point  each of the gene_count − 1 interior cuts is equally likely.
     /// multi_point   each set of crossover_cuts different interior cuts is equally likely.
     /// blend         the weight of the second parent is (k + ½)/2^32, where each of the 2^32 values of k is equally
-    ///               likely; draws one word. The weight is never ½, and 1 − weight is exact. The mask contains all genes
-    ///               if the weight is above ½, otherwise none.
+    ///               likely; draws one word. The weight is never ½, and 1 − weight is exact. The mask contains all
+    ///               genes if the weight is above ½, otherwise none.
     /// none          always false.
     bool draw(Mixture<extent>& mixture, base::RandomStream& random) const;
 

@@ -1,5 +1,5 @@
-// Gene layout: which genes the chromosomes of a world have, in chromosome order: the six genes of the body, the weights of
-// the brain, and the free genes.
+// Gene layout: which genes the chromosomes of a world have, in chromosome order: the six genes of the body, the weights
+// of the brain, and the free genes.
 //
 // Determinism  the numbers of genes and their names depend only on parameters that take effect at a reset, so all
 //              generations of a run have the same layout. The bounds may change between two generations.

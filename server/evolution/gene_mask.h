@@ -12,8 +12,8 @@
 
 namespace evod::evolution {
 
-// Operators are templates on `extent`, the number of genes of a chromosome: body_gene_count, which the compiler then uses
-// to unroll loops, or std::dynamic_extent for any number of genes.
+// Operators are templates on `extent`, the number of genes of a chromosome: body_gene_count, which the compiler then
+// uses to unroll loops, or std::dynamic_extent for any number of genes.
 
 /// A number of genes: a constant unless `extent` is dynamic.
 template <std::size_t extent>
@@ -72,7 +72,8 @@ class GeneMask {
             words_[word] ^= all_of(word);
         }
     }
-    /// Replaces each word of 32 genes, the first genes in the lowest bits, by next(); bits beyond the genes are ignored.
+    /// Replaces each word of 32 genes, the first genes in the lowest bits, by next(); bits beyond the genes are
+    /// ignored.
     template <class Next>
     constexpr void assign(const Next& next) {
         for (unsigned word = 0; word < words_.size(); ++word) {

@@ -50,11 +50,11 @@ class ValueMutation {
     /// Mutates one chromosome, in this order. Only the genes of mutate_group change, except that all genes are moved to
     /// their bounds.
     ///
-    /// creep     adds step · U to each gene with probability mutation_chance; U is uniform in (−1, 1) or standard normal,
-    ///           and the step is mutation_step, brain_mutation_step or free_mutation_step.
+    /// creep     adds step · U to each gene with probability mutation_chance; U is uniform in (−1, 1) or standard
+    ///           normal, and the step is mutation_step, brain_mutation_step or free_mutation_step.
     /// reset     replaces each gene with probability reset_chance by a value uniform within its bounds.
-    /// scale     with probability scale_chance, multiplies one gene by 1 + scale_range · U; U is uniform in (−1, 1). Each
-    ///           gene is equally likely. Draws the chance, the gene and one word.
+    /// scale     with probability scale_chance, multiplies one gene by 1 + scale_range · U; U is uniform in (−1, 1).
+    ///           Each gene is equally likely. Draws the chance, the gene and one word.
     /// bounds    moves each gene that is outside its bounds to the nearer bound, and counts it.
     /// bit flip  flips each bit of each gene's BinaryView with probability bit_flip_chance. A gene without a flipped
     ///           bit keeps its exact value. A gene with one gets the value of its new code.

@@ -18,8 +18,8 @@ class OrderMutation {
   public:
     explicit OrderMutation(const Parameters& parameters);
 
-    /// Mutates with probability rearrange_chance. Only the genes of mutate_group take part; if there is only one, nothing
-    /// happens. A pair or slice is given by two different indices; every choice of them is equally likely.
+    /// Mutates with probability rearrange_chance. Only the genes of mutate_group take part; if there is only one,
+    /// nothing happens. A pair or slice is given by two different indices; every choice of them is equally likely.
     ///
     /// swap       the two genes of a pair exchange values; with probability 1/2 so do those of a second pair, which may
     ///            be the same pair.

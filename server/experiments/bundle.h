@@ -15,7 +15,8 @@
 namespace evod::experiments {
 
 /// Writes the bundle into a folder with the ending `.part`, and renames it to `folder` when it is complete. Refused if
-/// `folder` exists. After any other refusal, neither folder exists. A `.part` folder that an ended program left is replaced.
+/// `folder` exists. After any other refusal, neither folder exists. A `.part` folder that an ended program left is
+/// replaced.
 base::Result<void> write_bundle(const replay::RunSource& run, const std::string& folder);
 
 } // namespace evod::experiments

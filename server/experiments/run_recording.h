@@ -1,8 +1,8 @@
 // Run recording: writes the run file of a run without a server, and continues a run that was interrupted.
 //
-// One transaction contains the results of a generation, the beginning of the next one and its first tick. So a run that was killed at any
-// moment continues at the beginning of the generation that it was simulating, and loses only the ticks of that generation.
-// The file contains everything that a server would record, except checkpoints.
+// One transaction contains the results of a generation, the beginning of the next one and its first tick. So a run that
+// was killed at any moment continues at the beginning of the generation that it was simulating, and loses only the
+// ticks of that generation. The file contains everything that a server would record, except checkpoints.
 //
 // Owner        the thread that advances the world.
 // Threads      only the owner.
@@ -28,8 +28,8 @@ enum class Stored : std::uint8_t { Nothing, Part, Whole };
 
 class RunRecording {
   public:
-    /// Opens the run file of a run; it need not exist. A refusal leaves the file unchanged. Refused if the file is no run
-    /// file, is damaged, is being written, or contains another run than that of this experiment.
+    /// Opens the run file of a run; it need not exist. A refusal leaves the file unchanged. Refused if the file is no
+    /// run file, is damaged, is being written, or contains another run than that of this experiment.
     ///
     /// experiment  if it has no seed, the file may have any.
     static base::Result<std::unique_ptr<RunRecording>> open(std::string path, const parameters::Experiment& experiment,
@@ -47,8 +47,8 @@ class RunRecording {
     simulation::World continued_world(const parameters::Experiment& experiment,
                                       simulation::FirstPopulation first_population, base::Executor& executor,
                                       simulation::IslandsMaker* maker);
-    /// Calls use(statistics) for every island of every stored generation before the one at which the run continues; of a
-    /// whole run, for all generations.
+    /// Calls use(statistics) for every island of every stored generation before the one at which the run continues; of
+    /// a whole run, for all generations.
     base::Result<void>
     read_statistics(const std::function<void(const std::vector<simulation::GenerationStatistics>&)>& use);
 

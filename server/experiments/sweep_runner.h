@@ -41,8 +41,8 @@ struct RunFiles {
     std::string part;
     std::string run_file = {}, name = {}; // empty: no run file is written
 };
-/// Executes one run from beginning to end on this thread. Returns nullopt if options.stopped() returned true; then there
-/// are no files.
+/// Executes one run from beginning to end on this thread. Returns nullopt if options.stopped() returned true; then
+/// there are no files.
 base::Result<std::optional<RunEnd>> execute_run(const Sweep& sweep, std::size_t run, const RunFiles& files,
                                                 const SweepRunnerOptions& options);
 

@@ -1,11 +1,11 @@
-// Job queue: runs background jobs on at most threads_max threads. It serves users in turn, and the jobs of one user in the
-// order of their arrival.
+// Job queue: runs background jobs on at most threads_max threads. It serves users in turn, and the jobs of one user in
+// the order of their arrival.
 //
 // Each kind of work has its own queue, so slow jobs of one kind cannot block other kinds.
 //
 // Owner        the object whose jobs it runs. A job owns its data and delivers its result itself.
-// Threads      the constructor starts the first thread. The queue starts another one when a job is added and no thread is
-//              idle. If the system refuses it, the job waits for a thread that exists. Any thread may call add().
+// Threads      the constructor starts the first thread. The queue starts another one when a job is added and no thread
+//              is idle. If the system refuses it, the job waits for a thread that exists. Any thread may call add().
 // Full         never: the caller must bound the number of jobs that it adds.
 #pragma once
 

@@ -3,10 +3,10 @@
 // oneTBB, which serves the live worlds, has one set of threads for the whole program, so it cannot give the replays
 // threads of another priority. ThreadSanitizer can see all of this pool, but not of oneTBB.
 //
-// Loops        of a tick follow one another within microseconds, less than it takes to wake a thread. So a thread that finds
-//              no work yields its processor some times before it sleeps.
-// Threads      the caller of a loop works too. A loop that is started inside a piece runs on the thread that started it.
-//              One thread at a time may start a loop from outside.
+// Loops        of a tick follow one another within microseconds, less than it takes to wake a thread. So a thread that
+//              finds no work yields its processor some times before it sleeps.
+// Threads      the caller of a loop works too. A loop that is started inside a piece runs on the thread that started
+//              it. One thread at a time may start a loop from outside.
 // Exceptions   run() throws the first one that a piece has thrown, after all pieces have run.
 // Determinism  any thread may compute any piece; the result must not depend on it.
 #pragma once
@@ -39,8 +39,8 @@ class ThreadPool final : public base::Executor {
     void run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) override;
 
   private:
-    /// The pieces that one thread takes first: a range of indices. When it has none left, it takes from the others. So in
-    /// all loops over the same data, a thread mostly works on the same part, which is then in its cache.
+    /// The pieces that one thread takes first: a range of indices. When it has none left, it takes from the others. So
+    /// in all loops over the same data, a thread mostly works on the same part, which is then in its cache.
     struct alignas(64) Part {
         std::atomic<std::size_t> next = 0; // the first index that no thread has taken; may exceed `end`
         std::size_t end = 0;

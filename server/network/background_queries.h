@@ -1,15 +1,15 @@
-// Background queries: exports, GetBreeding and the checks of new forks, which job queues compute from run files. Meanwhile
-// the storage thread may write to these files.
+// Background queries: exports, GetBreeding and the checks of new forks, which job queues compute from run files.
+// Meanwhile the storage thread may write to these files.
 //
-// Users        a user has at most half of the exports and of the GetBreeding that run at once (base/quota.h), whatever number of
-//              sessions the user has. All jobs together compute on few processors, at a low priority, and the users get
-//              equal parts of that time (runtime/job_turns.h).
+// Users        a user has at most half of the exports and of the GetBreeding that run at once (base/quota.h), whatever
+//              number of sessions the user has. All jobs together compute on few processors, at a low priority, and the
+//              users get equal parts of that time (runtime/job_turns.h).
 // Owner        the dispatcher, on the network thread. The jobs return their results through the outbox.
-// Full         a session has at most one export. While exports_max exports are running, a new one is refused, or takes the
-//              place of the oldest export of the user with the most.
+// Full         a session has at most one export. While exports_max exports are running, a new one is refused, or takes
+//              the place of the oldest export of the user with the most.
 //              A session has at most one running GetBreeding. Further ones wait in a queue, which serves users in turn.
-//              While all places are taken, the last GetBreeding of the user with the most may have to begin again later.
-//              Above breedings_waiting_max waiting GetBreeding of a user, further ones are refused.
+//              While all places are taken, the last GetBreeding of the user with the most may have to begin again
+//              later. Above breedings_waiting_max waiting GetBreeding of a user, further ones are refused.
 #pragma once
 
 #include "server/base/fair_queue.h"

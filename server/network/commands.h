@@ -1,5 +1,5 @@
-// Commands: passes the commands of clients to the simulation thread, and uses the reply cache to make them idempotent. Also
-// sends the commands of the server itself, and limits the leases that commands grant.
+// Commands: passes the commands of clients to the simulation thread, and uses the reply cache to make them idempotent.
+// Also sends the commands of the server itself, and limits the leases that commands grant.
 //
 // Owner        the dispatcher, on the network thread.
 #pragma once
@@ -32,8 +32,8 @@ class Commands {
     ///
     /// lease  for ReleaseLease: the number of the lease.
     void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
-    /// Must be called after a command was refused, or was applied and stored. Sends the answer and reports the change to
-    /// subscribers.
+    /// Must be called after a command was refused, or was applied and stored. Sends the answer and reports the change
+    /// to subscribers.
     void on_done(runtime::CommandDone done);
 
     /// The keys in the reply cache, by user.
@@ -44,8 +44,8 @@ class Commands {
     void restore(const std::vector<run_file::UsedKey>& keys, const std::vector<run_file::JournalEntry>& answers);
     /// Starts a lease that was granted before the server started. When it expires, the world continues.
     void restart_lease(const std::string& world) { leases_.begin(world, 0, {}); }
-    /// Returns nullopt if the session's user holds the lease of the world with the client_key of this request; otherwise
-    /// the refusal.
+    /// Returns nullopt if the session's user holds the lease of the world with the client_key of this request;
+    /// otherwise the refusal.
     std::optional<base::Refusal> renew_lease(const Session& session, const v1::Request& request,
                                              const std::string& world);
     void end_lease(const std::string& world) { leases_.end(world); }

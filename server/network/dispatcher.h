@@ -1,5 +1,5 @@
-// Dispatcher: handles each request and sends its answer. It checks the role, and passes requests on: commands to Commands,
-// queries to the simulation thread, exports to BackgroundQueries.
+// Dispatcher: handles each request and sends its answer. It checks the role, and passes requests on: commands to
+// Commands, queries to the simulation thread, exports to BackgroundQueries.
 //
 // Owner        the server.
 // Threads      the network thread. Requests go to the simulation thread as data (server/runtime/mail.h) and come back

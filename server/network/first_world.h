@@ -1,5 +1,5 @@
-// First world: what a server does with its worlds at its start. It creates the first world, or compares it with the stored
-// one, and gives a world the commands of the options --speed and --start.
+// First world: what a server does with its worlds at its start. It creates the first world, or compares it with the
+// stored one, and gives a world the commands of the options --speed and --start.
 //
 // Owner        the server.
 // Threads      the network thread, before any client is served.

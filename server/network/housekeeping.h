@@ -28,8 +28,8 @@ class Housekeeping {
     void schedule(access::Gate& gate);
     void check_tokens(access::Gate& gate);
     void check_clients(runtime::Clock::time_point now);
-    /// Returns free memory to the system. Answered requests and ended sessions leave fragmented free memory, which malloc
-    /// does not return by itself.
+    /// Returns free memory to the system. Answered requests and ended sessions leave fragmented free memory, which
+    /// malloc does not return by itself.
     void trim_heap(runtime::Clock::time_point now);
 
     const SessionTable& table_;

@@ -42,8 +42,8 @@ class Http {
 
     void accepted(boost::asio::ip::tcp::socket socket);
     /// Makes room for one more connection of this address. Closes one that waits for a request, the oldest: of this
-    /// address if it holds half, otherwise of the address with the most. Closes other connections only of an address that
-    /// has clearly more. Returns false if there is no room.
+    /// address if it holds half, otherwise of the address with the most. Closes other connections only of an address
+    /// that has clearly more. Returns false if there is no room.
     bool make_room(const std::string& address_prefix);
 
     boost::asio::io_context& context_;

@@ -1,5 +1,5 @@
-// HTTP rules: what a request may ask for and what an answer says, as pure functions: which Host and Origin are ours, which
-// encodings a browser accepts, which headers protect the page.
+// HTTP rules: what a request may ask for and what an answer says, as pure functions: which Host and Origin are ours,
+// which encodings a browser accepts, which headers protect the page.
 //
 // The page controls the server, and on the loopback interface without a token. Host prevents that another site reaches
 // the server under a name of its own (DNS rebinding), Origin that another site opens a session.

@@ -1,8 +1,8 @@
-// Large frames: divides the network thread's time for parsing and checking large messages among users. A frame of 1 MiB can
-// take tens of milliseconds, in which no other session is served, and a user may have many sessions.
+// Large frames: divides the network thread's time for parsing and checking large messages among users. A frame of 1 MiB
+// can take tens of milliseconds, in which no other session is served, and a user may have many sessions.
 //
-// The time that a user's large frames take is measured. After each, the sessions of this user parse none for four times as
-// long, so they take at most a fifth of the thread's time. Small frames do not wait; requests_per_s_max limits them.
+// The time that a user's large frames take is measured. After each, the sessions of this user parse none for four times
+// as long, so they take at most a fifth of the thread's time. Small frames do not wait; requests_per_s_max limits them.
 //
 // Owner        the server; used on the network thread.
 #pragma once

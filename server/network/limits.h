@@ -120,8 +120,8 @@ std::string limit_list();
 /// The limits as the message that the server sends to clients.
 v1::Limits limits_message(const LimitOptions& options);
 
-/// Counts how often each limit was reached since the server started, and how often the holder of the most lost something
-/// because another user wanted it.
+/// Counts how often each limit was reached since the server started, and how often the holder of the most lost
+/// something because another user wanted it.
 class LimitCounters {
   public:
     static constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::HttpRequestTimeout) + 1;
@@ -161,8 +161,8 @@ constexpr std::chrono::milliseconds untaken_max{30'000};
 
 // Frames of a WebSocket without content: pings, pongs, empty messages. A browser sends one per websocket_ping_after.
 constexpr double empty_frames_per_s_max = 100, empty_frames_burst_max = 1000;
-// The server sends a ping to the client of a WebSocket after this silence, and closes the session after that one. Proxies
-// close connections on which nothing is sent.
+// The server sends a ping to the client of a WebSocket after this silence, and closes the session after that one.
+// Proxies close connections on which nothing is sent.
 constexpr std::chrono::seconds websocket_ping_after{10}, websocket_silence_max{30};
 
 // Maximum size of all cached answers together.

@@ -1,5 +1,5 @@
-// Log limit: bounds the rate of log lines that clients cause, separately for each user, so that a client that connects again
-// and again neither fills the disk nor hides the lines about other users.
+// Log limit: bounds the rate of log lines that clients cause, separately for each user, so that a client that connects
+// again and again neither fills the disk nor hides the lines about other users.
 //
 // Owner        the server; used on the network thread.
 #pragma once
@@ -18,7 +18,8 @@ namespace evod::network {
 
 class LogLimit {
   public:
-    /// Returns how many lines about this user were left out since the last line, or nullopt if this one must be left out.
+    /// Returns how many lines about this user were left out since the last line, or nullopt if this one must be left
+    /// out.
     std::optional<std::uint64_t> take(const std::string& user, runtime::Clock::time_point now) {
         if (!users_.contains(user) && users_.size() >= log_users_max) {
             users_.erase(std::ranges::min_element(users_, {}, [](const auto& entry) { return entry.second.used; }));

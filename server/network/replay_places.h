@@ -1,8 +1,9 @@
-// Replay places: the replays that sessions have open or are opening. Each of them uses the quota of its session's account.
+// Replay places: the replays that sessions have open or are opening. Each of them uses the quota of its session's
+// account.
 //
 // Owner        the dispatcher, on the network thread.
-// Full         if no place is free, the account with the most replays loses its oldest one to an account that has clearly
-//              fewer (base::Quota).
+// Full         if no place is free, the account with the most replays loses its oldest one to an account that has
+//              clearly fewer (base::Quota).
 #pragma once
 
 #include "server/base/quota.h"

@@ -2,9 +2,9 @@
 // and is not applied again.
 //
 // A command is identified by (user, client_key, request_id), so commands of different users never collide. The cache
-// keeps the newest `kept_per_key` answers of each client_key, for `keys_max` keys and `bytes_max` bytes. It remembers the
-// highest request_id of the last `evicted_max` evicted keys. It can therefore refuse a command whose answer it no longer
-// has, instead of applying the command again.
+// keeps the newest `kept_per_key` answers of each client_key, for `keys_max` keys and `bytes_max` bytes. It remembers
+// the highest request_id of the last `evicted_max` evicted keys. It can therefore refuse a command whose answer it no
+// longer has, instead of applying the command again.
 //
 // Each of these three pools is divided among accounts (base/quota.h). If an account has more than half of a pool, the
 // cache evicts keys of this account. If a pool is full, the cache evicts keys of the account that has the most. Of an

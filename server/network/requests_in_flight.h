@@ -1,8 +1,8 @@
 // Requests in flight: the unanswered requests of a session, their memory, and the requests that wait
 // until a query of the session is answered.
 //
-// The simulation thread processes at most one query per session at a time, so that all sessions get an equal share of its
-// time. Meanwhile all further requests of the session are held back to keep their order.
+// The simulation thread processes at most one query per session at a time, so that all sessions get an equal share of
+// its time. Meanwhile all further requests of the session are held back to keep their order.
 //
 // Owner        the session, on the network thread.
 // Full         above requests_in_flight_max, admit() returns false. Held-back requests are admitted requests, too.

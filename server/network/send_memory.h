@@ -1,11 +1,12 @@
-// SendMemory: counts the memory that the server holds for its sessions, so that one limit applies to all sessions together:
-// data that waits to be sent, requests and their answers in preparation, subscriptions with their snapshots, and replays.
+// SendMemory: counts the memory that the server holds for its sessions, so that one limit applies to all sessions
+// together: data that waits to be sent, requests and their answers in preparation, subscriptions with their snapshots,
+// and replays.
 //
 // If several sessions share the same bytes, these bytes exist once and are counted once.
 //
 // Owner        the server. The sessions use it on the network thread.
-// Full         above half of `bytes_max`, which is the most that one user may hold, it calls `check` from time to time. That
-//              must close sessions until each user, and all together, are within their limits.
+// Full         above half of `bytes_max`, which is the most that one user may hold, it calls `check` from time to time.
+//              That must close sessions until each user, and all together, are within their limits.
 #pragma once
 
 #include "proto/codec/shared_bytes.h"
@@ -24,8 +25,8 @@ constexpr std::size_t bytes_per_frame = 120, bytes_per_holder = 40;
 
 class SendMemory final : public streaming::SnapshotMemory {
   public:
-    /// check  called once when the sum exceeds half of the limit. It is called again only after rearm(), when the sum has
-    ///        grown by a part of the limit, or exceeds it. It must not release memory before it returns.
+    /// check  called once when the sum exceeds half of the limit. It is called again only after rearm(), when the sum
+    ///        has grown by a part of the limit, or exceeds it. It must not release memory before it returns.
     SendMemory(std::size_t bytes_max, std::function<void()> check)
         : bytes_max_{bytes_max}, check_{std::move(check)}, check_above_{bytes_max / 2} {}
 

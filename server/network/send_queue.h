@@ -56,8 +56,8 @@ class SendQueue {
     std::size_t begin_batch();
     /// Begins to send the rest of a snapshot that the connection did not accept at once.
     void begin_rest(const SharedBytes& rest);
-    /// The same for a snapshot that consists of these parts, of which the connection accepted the first bytes. The parts
-    /// are not copied, because all sessions that receive them share them. SnapshotMemory counts them.
+    /// The same for a snapshot that consists of these parts, of which the connection accepted the first bytes. The
+    /// parts are not copied, because all sessions that receive them share them. SnapshotMemory counts them.
     void begin_rest(const Header& header, std::span<const SharedBytes* const> parts, std::string_view tail,
                     std::size_t accepted_bytes);
     /// What is being sent.
@@ -81,7 +81,8 @@ class SendQueue {
     std::deque<Queued> waiting_;
     std::vector<Queued> sending_;
     std::vector<SharedBytes> parts_; // of a snapshot that is being sent
-    // Point to header_and_tail_ and the bytes in sending_ and parts_. Not empty: a write is in progress or about to start.
+    // Point to header_and_tail_ and the bytes in sending_ and parts_. Not empty: a write is in progress or about to
+    // start.
     std::vector<boost::asio::const_buffer> buffers_;
     std::string header_and_tail_;
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // bytes in waiting_ and sending_

@@ -1,5 +1,5 @@
-// The part of Server that collects metrics, checks the server's health, and opens the HTTP port that serves both and the
-// browser viewer.
+// The part of Server that collects metrics, checks the server's health, and opens the HTTP port that serves both and
+// the browser viewer.
 #include "proto/codec/compression.h"
 #include "proto/codec/gzip.h"
 #include "server/base/instructions.h"

@@ -1,5 +1,5 @@
-// Server options: what a server starts with. Options that must be given together are one struct, options that exclude each
-// other are a variant, and an option that may be absent is an std::optional.
+// Server options: what a server starts with. Options that must be given together are one struct, options that exclude
+// each other are a variant, and an option that may be absent is an std::optional.
 //
 // Threads      any; plain data.
 #pragma once

@@ -188,8 +188,8 @@ asio::awaitable<void> Session::read() {
         const bool more_to_say = requests.unanswered() > 0 || queue_.has_waiting_frames() || queue_.is_sending();
         if (error == asio::error::eof && phase_ != Phase::Ended &&
             (phase_ == Phase::Finishing || more_to_say || transport_->is_websocket())) {
-            // The client closed its sending side but may still read. It therefore receives the answers that come soon, and
-            // in a WebSocket a Close frame.
+            // The client closed its sending side but may still read. It therefore receives the answers that come soon,
+            // and in a WebSocket a Close frame.
             if (phase_ == Phase::Finishing) {
                 close_code_ = close_code_.value_or(WebSocketClose::Normal);
             } else {
@@ -301,8 +301,8 @@ asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
     fail(refused);
 }
 
-/// Reads and discards further input. If unread bytes remained, closing the connection would discard the last answer. The
-/// frames of a WebSocket are not decoded, so that neither a ping nor an invalid frame ends this.
+/// Reads and discards further input. If unread bytes remained, closing the connection would discard the last answer.
+/// The frames of a WebSocket are not decoded, so that neither a ping nor an invalid frame ends this.
 asio::awaitable<void> Session::discard_input() {
     std::array<std::byte, 16384> bytes;
     boost::system::error_code error;

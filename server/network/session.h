@@ -56,8 +56,8 @@ using Sessions = std::map<std::uint64_t, SessionPtr>;
 /// Returns the session with this number; nullptr if it has ended.
 SessionPtr find_session(const Sessions& sessions, std::uint64_t number);
 
-/// Whose quota the sessions of a user use or, without a user, those from an address. No user has the name of an address's
-/// account.
+/// Whose quota the sessions of a user use or, without a user, those from an address. No user has the name of an
+/// address's account.
 std::string account_of(const std::string& user, const std::string& address_prefix);
 
 /// The interface of the server that a session uses.

@@ -1,11 +1,11 @@
 // Session table: accepts connections as sessions, and contains the sessions.
 //
 // Owner        the server, on the network thread.
-// Full         a connection becomes a newcomer, which counts for its address until its Hello. If there are too many, the
-//              oldest newcomer makes room: of the same address if it holds half of the places, otherwise of the address
-//              with the most. With its Hello it needs one of the places of its account (base::Quota). If none is free, the
-//              account with the most sessions loses its oldest one without a command under way. While farewells_max
-//              connections receive a Goodbye, the oldest of them is closed at once for each new one.
+// Full         a connection becomes a newcomer, which counts for its address until its Hello. If there are too many,
+//              the oldest newcomer makes room: of the same address if it holds half of the places, otherwise of the
+//              address with the most. With its Hello it needs one of the places of its account (base::Quota). If none
+//              is free, the account with the most sessions loses its oldest one without a command under way. While
+//              farewells_max connections receive a Goodbye, the oldest of them is closed at once for each new one.
 #pragma once
 
 #include "server/base/quota.h"

@@ -19,8 +19,8 @@ class Signal {
 
     explicit Signal(const boost::asio::any_io_executor& executor) : timer_{executor} {}
 
-    /// Waits for notify(), at most until this time. A notify() before the wait has no effect. Since both run on one thread,
-    /// none comes between the caller's last check and the wait.
+    /// Waits for notify(), at most until this time. A notify() before the wait has no effect. Since both run on one
+    /// thread, none comes between the caller's last check and the wait.
     boost::asio::awaitable<void> wait(Timer::time_point until = Timer::time_point::max()) {
         is_awaited_ = true;
         timer_.expires_at(until);

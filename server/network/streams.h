@@ -31,8 +31,8 @@ class Streams {
     /// Sends the newest snapshots of a subscription as keyframes. Returns false if the session has no such
     /// subscription. For the rate limit of the session, each snapshot counts as a frame.
     bool send_keyframes(Session& session, std::uint32_t subscription_id);
-    /// Changes the view of a subscription that has one. The newest snapshots are sent again with the new view, and count
-    /// in the same way.
+    /// Changes the view of a subscription that has one. The newest snapshots are sent again with the new view, and
+    /// count in the same way.
     void set_view(Session& session, std::uint32_t subscription_id, const v1::View& view);
 
     /// Returns, by session, its part of the memory of the snapshots that sessions share.

@@ -50,7 +50,8 @@ class Transport {
     /// Reads bytes as they arrive, even those of a WebSocket.
     asio::awaitable<Transferred> receive_some(asio::mutable_buffer buffer);
     /// Writes as many bytes as the system accepts without waiting, possibly none. Accepts at most buffers_at_once
-    /// buffers. With TLS it writes nothing. The next call must be write() with the rest of the buffers, if there is one.
+    /// buffers. With TLS it writes nothing. The next call must be write() with the rest of the buffers, if there is
+    /// one.
     Transferred write_now(std::span<const asio::const_buffer> buffers);
     static constexpr std::size_t buffers_at_once = 16;
     /// Writes all buffers, after the WebSocket control frames that wait.
@@ -79,8 +80,8 @@ class Transport {
     const tcp::endpoint& peer() const { return peer_; }
     /// The address of this machine that the peer has connected to.
     tcp::endpoint local() const;
-    /// Closes the sending side, a WebSocket with this code. With TLS it waits for the peer's close_notify, so a concurrent
-    /// read must be in progress to receive it.
+    /// Closes the sending side, a WebSocket with this code. With TLS it waits for the peer's close_notify, so a
+    /// concurrent read must be in progress to receive it.
     asio::awaitable<void> finish(WebSocketClose code = WebSocketClose::Normal);
     void close();
     /// Closes the connection at once and discards all data that the peer has not received.

@@ -96,8 +96,8 @@ std::string encode_ping();
 std::string encode_pong(std::string_view payload);
 std::string encode_close(WebSocketClose code);
 
-/// Returns the value of Sec-WebSocket-Accept that answers a Sec-WebSocket-Key; nullopt if the key is not the Base64 of 16
-/// bytes.
+/// Returns the value of Sec-WebSocket-Accept that answers a Sec-WebSocket-Key; nullopt if the key is not the Base64 of
+/// 16 bytes.
 std::optional<std::string> websocket_accept(std::string_view key);
 
 } // namespace evod::network

@@ -106,14 +106,6 @@ void add_values(const Message& message, std::string_view path, std::vector<Value
     }
 }
 
-std::string with_separators(std::uint64_t number) {
-    std::string text = std::to_string(number);
-    for (std::size_t end = text.size(); end > 3; end -= 3) {
-        text.insert(end - 3, 1, ',');
-    }
-    return text;
-}
-
 std::string real_text(double number) {
     return text::number_text(number + 0.0, text::Exponent::IfLong); // + 0.0: -0 becomes 0
 }
@@ -131,7 +123,7 @@ std::string one_decimal(double number) {
 
 /// "3 organisms"; without words, only the number.
 Filled amount(std::uint64_t number, std::string_view words) {
-    std::string text = with_separators(number);
+    std::string text = text::with_separators(number);
     const std::size_t slash = words.find('/');
     if (slash != std::string_view::npos) {
         text += " " + std::string{number == 1 ? words.substr(0, slash) : words.substr(slash + 1)};
@@ -155,7 +147,7 @@ std::string text_of(const Value& value) {
 /// The text of one value by a rule that treats each value on its own.
 std::string text_of(const Value& value, std::string_view rule, const v1::Event& event) {
     if (rule.empty()) {
-        return with_separators(value.whole());
+        return text::with_separators(value.whole());
     }
     if (rule == "text") {
         return value.present() ? text_of(value) : "";

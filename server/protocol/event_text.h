@@ -20,8 +20,8 @@
 //   if               no text: only decides about an alternative
 //   NAME             a template of this name, filled from each message of the path, joined by ", "; or a table of words
 //                    of this name, which contains a text for each enumerator
-// A number and a flag are present if the field is. Other values are present if their text is not empty. An absent message
-// has no text; an absent number is 0.
+// A number and a flag are present if the field is. Other values are present if their text is not empty. An absent
+// message has no text; an absent number is 0.
 //
 // Threads      any; the templates are constant.
 #pragma once

@@ -1,5 +1,7 @@
 #include "server/protocol/parameters.h"
 
+#include "server/protocol/experiment_summary.h"
+
 #include "server/parameters/choice_help.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/refusals.h"
@@ -100,6 +102,7 @@ v1::ParameterSet to_proto(const parameters::ParameterSet& set) {
         *to.add_parameters() = state_of(description, set);
     }
     to.set_revision(set.revision);
+    to.set_summary(experiment_summary(set.active));
     return to;
 }
 

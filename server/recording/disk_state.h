@@ -27,8 +27,8 @@ class DiskState {
     std::optional<std::string> trouble() const;
     /// The runs whose files cannot be written now, or never again. A run is in the list until it ends.
     RunFaults faults() const;
-    /// The storage thread calls `changed` when trouble(), faults() or has_room() has changed. `changed` must neither block nor
-    /// call this object. When this function returns, the previous callback is not called any more.
+    /// The storage thread calls `changed` when trouble(), faults() or has_room() has changed. `changed` must neither
+    /// block nor call this object. When this function returns, the previous callback is not called any more.
     void when_changed(std::function<void()> changed);
 
     void added(std::size_t bytes) { waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed); }

@@ -1,8 +1,8 @@
 // Run fault: why the file of one run cannot be written, while the files of other runs can.
 //
-// The code of a refusal decides whose trouble a failed write is. DATA_LOSS and FAILED_PRECONDITION: the file is damaged,
-// or this version of evod cannot write to it. NOT_FOUND, ALREADY_EXISTS and INVALID_ARGUMENT: the name belongs to another
-// file, or to no file. All other codes: the disk cannot be written, which concerns all runs.
+// The code of a refusal decides whose trouble a failed write is. DATA_LOSS and FAILED_PRECONDITION: the file is
+// damaged, or this version of evod cannot write to it. NOT_FOUND, ALREADY_EXISTS and INVALID_ARGUMENT: the name belongs
+// to another file, or to no file. All other codes: the disk cannot be written, which concerns all runs.
 #pragma once
 
 #include "server/base/result.h"

@@ -9,14 +9,14 @@
 // Checkpoints    come after the other records of all runs. A job compresses them; this thread writes them in parts. At
 //                most one checkpoint per run waits. Its bytes are not counted. If the run ends, its waiting checkpoint
 //                is dropped; if the server stops, the checkpoint is written first.
-// Receipts       one sink receives the receipts of all records with tickets (receipt.h). A barrier is a ticket without a
-//                record.
+// Receipts       one sink receives the receipts of all records with tickets (receipt.h). A barrier is a ticket without
+//                a record.
 // Errors         a record that could not be written gets no receipt yet. The thread keeps the record. At intervals of
 //                `retry_time` it opens the file again and writes all records that may be missing. Barriers do not wait
 //                for that: they are refused. DiskState::trouble() returns the reason.
-// File names     a moved or deleted file counts as an error of its run, because data written to it would be lost when the
-//                server stops. The file stays open, so the error ends when the file is moved back. The thread continues to
-//                write the other runs.
+// File names     a moved or deleted file counts as an error of its run, because data written to it would be lost when
+//                the server stops. The file stays open, so the error ends when the file is moved back. The thread
+//                continues to write the other runs.
 // Damage         if a file is damaged, the thread closes it, drops the records of its run, gives refused receipts for
 //                them, and writes nothing to the file any more. DiskState::faults() returns the reason. The run remains
 //                in the list until it is closed.

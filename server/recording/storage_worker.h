@@ -50,7 +50,8 @@ class StorageWorker {
     bool commit(RunLog& run, const std::vector<WaitingRecord>& records);
     bool rename_to_final_name(RunLog& run);
     bool end(RunLog& run);
-    /// Ends a run whose file is damaged. A deleted world's file gets its final name, so that the name of the world is free.
+    /// Ends a run whose file is damaged. A deleted world's file gets its final name, so that the name of the world is
+    /// free.
     bool end_damaged(RunLog& run);
     /// Marks a run as ended, after its file has been closed and renamed.
     void finish(Closing& closing);

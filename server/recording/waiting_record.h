@@ -47,8 +47,8 @@ struct WaitingRecord {
 
 std::size_t bytes_of(const std::vector<WaitingRecord>& records);
 
-/// The number of a world's ended runs whose files may not have been renamed yet. The storage thread and the recorder share
-/// it.
+/// The number of a world's ended runs whose files may not have been renamed yet. The storage thread and the recorder
+/// share it.
 using Leaving = std::atomic<std::size_t>;
 
 /// How the file of a run is closed.

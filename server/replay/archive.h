@@ -44,7 +44,8 @@ class Archive {
     std::vector<run_file::JournalEntry> take_answers() { return std::move(answers_); }
 
     /// Removes from the archive, and returns, the client keys of commands whose answers are not among take_answers():
-    /// commands of ended runs and of damaged worlds. The key that was used last is the last one. Must be called only once.
+    /// commands of ended runs and of damaged worlds. The key that was used last is the last one. Must be called only
+    /// once.
     std::vector<run_file::UsedKey> take_used_keys() { return std::move(used_keys_); }
 
     /// The storage thread; nullptr after close().
@@ -60,8 +61,8 @@ class Archive {
 
   private:
     Archive(run_file::DataFolder folder, const run_file::RunFile::Options& options);
-    /// Reads the answers of ended runs and inserts them before the answers of recovered worlds. Reads the client keys of
-    /// older commands, and those of damaged worlds.
+    /// Reads the answers of ended runs and inserts them before the answers of recovered worlds. Reads the client keys
+    /// of older commands, and those of damaged worlds.
     void read_ended_answers(const std::vector<std::string>& ended, const std::vector<std::string>& damaged);
     /// Recovers one world. Returns an empty text if the world continues. If its run has ended, returns the new path of
     /// the file. Before the world is recovered, its file is only read.

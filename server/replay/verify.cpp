@@ -111,8 +111,8 @@ class StretchCheck {
         agreeing_part_ = "the beginning of the generation";
     }
 
-    /// The checkpoint with which the run begins, if it begins with one in the first generation of the stretch; otherwise
-    /// nullptr.
+    /// The checkpoint with which the run begins, if it begins with one in the first generation of the stretch;
+    /// otherwise nullptr.
     const run_file::StoredCheckpoint* beginning() const {
         const StoredGeneration& first = stretch_.front();
         const bool has_one = first.opening.moment.generation == file_.identity().first_generation &&

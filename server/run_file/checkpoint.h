@@ -1,7 +1,7 @@
 // Checkpoint: the bytes of a world's state (simulation/state_bytes.h), compressed by zstd.
 //
-// The bytes that are read come from an untrusted file. Decoding allocates no more memory than a state of the islands can
-// need.
+// The bytes that are read come from an untrusted file. Decoding allocates no more memory than a state of the islands
+// can need.
 #pragma once
 
 #include "server/base/result.h"

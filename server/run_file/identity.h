@@ -10,7 +10,8 @@ namespace evod::run_file {
 struct StoredIdentity {
     RunIdentity run;
     std::uint64_t keep_every = 1; // the value of Retention::keep_every()
-    // false: the run is not a fork, or an earlier evod wrote the file; then `run.parameters` are those that were requested.
+    // false: the run is not a fork, or an earlier evod wrote the file; then `run.parameters` are those that were
+    // requested.
     bool has_parameters_in_effect = true;
 };
 

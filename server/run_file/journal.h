@@ -25,9 +25,9 @@ class Journal {
                                                  std::size_t bytes_max = ~std::size_t{0});
     /// Number of the newest entry; 0 if there is none.
     std::uint64_t last_number() { return database_.natural("SELECT max(number) FROM journal"); }
-    /// The client keys of the commands up to entry number `last`, in the order of their last use. Beyond `keys_max`, the
-    /// keys that were not used for the longest time are left out. Reads the index journal_key, so the time is that of
-    /// reading some 30 bytes per entry. The checksums of the entries are not compared.
+    /// The client keys of the commands up to entry number `last`, in the order of their last use. Beyond `keys_max`,
+    /// the keys that were not used for the longest time are left out. Reads the index journal_key, so the time is that
+    /// of reading some 30 bytes per entry. The checksums of the entries are not compared.
     base::Result<std::vector<UsedKey>> used_keys(std::uint64_t last, std::size_t keys_max);
     void write(const JournalEntry& entry);
 

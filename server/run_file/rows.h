@@ -199,8 +199,8 @@ struct StatisticsTable {
     }
 };
 
-/// The numbers that have no columns in the statistics and in the selection accounts: those of the genes that are not body
-/// genes, in chromosome order. A file of chromosomes with body genes alone lacks this table.
+/// The numbers that have no columns in the statistics and in the selection accounts: those of the genes that are not
+/// body genes, in chromosome order. A file of chromosomes with body genes alone lacks this table.
 struct MoreGenesTable {
     static constexpr const char* name = "more_genes";
     static constexpr std::size_t key_columns = 2;

@@ -42,8 +42,8 @@ void create_all_tables(Database& database) {
     database.run("CREATE INDEX journal_key ON journal (user, client_key, request_id)");
 }
 
-/// Files that were created in a format before 4 may lack the first of these tables. Files of chromosomes with body genes
-/// alone lack the second: check_more_genes().
+/// Files that were created in a format before 4 may lack the first of these tables. Files of chromosomes with body
+/// genes alone lack the second: check_more_genes().
 constexpr std::string_view optional_tables[] = {FirstPopulationTable::name, MoreGenesTable::name};
 
 const Schema& expected_schema() {

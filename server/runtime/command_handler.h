@@ -46,8 +46,8 @@ class CommandHandler {
     base::Result<simulation::Applied> apply(const simulation::Command& command);
     /// Whether the command must wait because one of its worlds is being built or is coming.
     bool waits_for_a_world(const simulation::Command& command) const;
-    /// Whether the world is a fork that is coming. With an empty name: whether one comes soon, because the meaning of an
-    /// empty name may then change.
+    /// Whether the world is a fork that is coming. With an empty name: whether one comes soon, because the meaning of
+    /// an empty name may then change.
     bool is_coming(std::string_view world) const;
     /// Handles the commands that waited.
     void handle_kept();

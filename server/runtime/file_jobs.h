@@ -1,7 +1,8 @@
 // File jobs: background jobs that read run files for the loop of the replays.
 //
-// Users        one job of each user runs at a time, in the order in which they were added. So one user's many jobs do not
-//              delay those of another user. All jobs share the processors with the other background jobs (job_turns.h).
+// Users        one job of each user runs at a time, in the order in which they were added. So one user's many jobs do
+//              not delay those of another user. All jobs share the processors with the other background jobs
+//              (job_turns.h).
 // Owner        the loop of the replays, on its thread. A job returns its result through the mailbox.
 // Full         never: the loop bounds the number of seeks and replays.
 #pragma once

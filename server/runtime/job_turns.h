@@ -1,8 +1,8 @@
 // Job turns: bounds the number of background jobs that compute at once, and divides their time equally among users.
 //
 // A job computes only while it has a turn. It gives the turn back while it waits for its client, and passes it on after
-// `slice` if another job waits. The waiting job of the user with the least time comes next (time_shares.h). So a short job
-// waits for about one slice, however many long jobs other users have.
+// `slice` if another job waits. The waiting job of the user with the least time comes next (time_shares.h). So a short
+// job waits for about one slice, however many long jobs other users have.
 //
 // Threads      the threads of the job queues. A job that waits for a turn blocks its thread.
 #pragma once
@@ -25,7 +25,8 @@ namespace evod::runtime {
 class JobTurns {
   public:
     static constexpr std::chrono::milliseconds slice{10};
-    /// Of the threads of background jobs. Linux gives such a thread a tenth of a processor that a live world also wants.
+    /// Of the threads of background jobs. Linux gives such a thread a tenth of a processor that a live world also
+    /// wants.
     static constexpr int niceness = 10;
     /// Returns a number of turns with which some processors are left for the simulation and for packing.
     static std::size_t count_for(std::size_t processors);

@@ -1,5 +1,5 @@
-// The component evod_mpi: an exchange between processes that a launcher of MPI has started. This is the only source that
-// uses MPI; processes.h states how the program loads it.
+// The component evod_mpi: an exchange between processes that a launcher of MPI has started. This is the only source
+// that uses MPI; processes.h states how the program loads it.
 //
 // All collective operations are non-blocking ones of MPI, because a process has to notice that another one does not
 // arrive, and because it must not use a processor while it waits. Boost.MPI has no such operations, so it only starts

@@ -1,11 +1,12 @@
-// Outbox: passes data from other threads to the network thread: replies, events and the state of run files in order, and
-// the newest snapshots.
+// Outbox: passes data from other threads to the network thread: replies, events and the state of run files in order,
+// and the newest snapshots.
 //
-// Threads      the simulation threads add data, the storage thread adds receipts, and background jobs add their results.
-//              `wake` notifies the network thread, which then takes all data.
-// Full         the mailbox and the sessions bound the number of replies. At most `events_max` events wait, of which half
-//              may be of replays, and half of these of one user's replays; further ones are dropped and counted. Of each world only the newest snapshot waits; replaced ones are counted. Changes
-//              of the state of run files are rare and never dropped.
+// Threads      the simulation threads add data, the storage thread adds receipts, and background jobs add their
+//              results. `wake` notifies the network thread, which then takes all data.
+// Full         the mailbox and the sessions bound the number of replies. At most `events_max` events wait, of which
+//              half may be of replays, and half of these of one user's replays; further ones are dropped and counted.
+//              Of each world only the newest snapshot waits; replaced ones are counted. Changes of the state of run
+//              files are rare and never dropped.
 #pragma once
 
 #include "server/base/quota.h"

@@ -46,8 +46,8 @@ class Pace {
     /// A world at full speed simulates ticks for about this time between two readings of the clock, because in a small
     /// world one tick takes only as long as one reading.
     static constexpr std::chrono::microseconds between_clock_readings{20};
-    /// A shared world at full speed simulates ticks for about this time before its processes exchange results. Mail waits
-    /// for as long.
+    /// A shared world at full speed simulates ticks for about this time before its processes exchange results. Mail
+    /// waits for as long.
     static constexpr std::chrono::milliseconds between_exchanges{15};
 
     /// Work that takes as much time as it can get: a world, or a seek.

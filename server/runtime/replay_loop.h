@@ -1,8 +1,8 @@
 // Replay loop: the simulation loop of the replays, which are worlds that show stored runs, and of the seeks that move
 // them. It has a laboratory of its own, and shares nothing with the loop of the live worlds.
 //
-// A server that shows a run file has only this loop. Worlds that clients then create live in it, next to the replays, so
-// it handles commands, too.
+// A server that shows a run file has only this loop. Worlds that clients then create live in it, next to the replays,
+// so it handles commands, too.
 //
 // Threads      only the thread of the replays calls it.
 // Determinism  a replay reproduces a run bit for bit.

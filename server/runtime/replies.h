@@ -1,5 +1,5 @@
-// Replies: what the simulation thread computes for its mail (mail.h), and what background jobs compute, as data on the way
-// to the network thread, where Dispatcher::deliver() completes the answer to the client.
+// Replies: what the simulation thread computes for its mail (mail.h), and what background jobs compute, as data on the
+// way to the network thread, where Dispatcher::deliver() completes the answer to the client.
 //
 // A reply with a ticket waits for the disk: the network thread holds it until the storage thread has given the receipt
 // with this ticket (unwritten_replies.h).
@@ -103,8 +103,8 @@ struct BreedingDone {
     bool is_shortened = false; // the answer omits rows because of a limit
 };
 
-/// Turns the answer to an applied command into a refusal. The command has changed the world but was not recorded, or the
-/// record cannot be read.
+/// Turns the answer to an applied command into a refusal. The command has changed the world but was not recorded, or
+/// the record cannot be read.
 CommandDone refused(CommandDone done, base::Refusal why);
 
 /// What the network thread answers.

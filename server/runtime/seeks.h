@@ -4,8 +4,8 @@
 //   begin → read the file → simulate up to the moment → take_ended
 //
 // Owner        the loop of the replays, on its thread. Background jobs read the files.
-// Full         the places of replays (network/replay_places.h) bound the number of seeks: of the seeks that move a replay, one is
-//              read and one simulates.
+// Full         the places of replays (network/replay_places.h) bound the number of seeks: of the seeks that move a
+//              replay, one is read and one simulates.
 // Determinism  a seek reproduces a run bit for bit.
 #pragma once
 

@@ -1,13 +1,13 @@
 // Simulation loop: pass() is one pass of a simulation thread. The loop owns a laboratory. Its parts decide when each
-// world advances (pace.h), answer queries (queries.h) and carry out commands (command_handler.h). The laboratory decides
-// what happens in a tick.
+// world advances (pace.h), answer queries (queries.h) and carry out commands (command_handler.h). The laboratory
+// decides what happens in a tick.
 //
-//   state of the disk → commands → queries → worlds that are due → queries → events and snapshots into the outbox → sleep
-//   until the next world is due
+//   state of the disk → commands → queries → worlds that are due → queries → events and snapshots into the outbox →
+//   sleep until the next world is due
 //
 // Queries      are answered in idle time, and in a small share of the other time.
-// Threads      only its simulation thread calls it. A server has two loops: this one owns the live worlds, replay_loop.h
-//              the replays. They share nothing.
+// Threads      only its simulation thread calls it. A server has two loops: this one owns the live worlds,
+//              replay_loop.h the replays. They share nothing.
 // Determinism  the clock decides how many ticks are simulated. It does not influence what happens in them.
 #pragma once
 
@@ -26,8 +26,8 @@ namespace evod::runtime {
 
 class SimulationLoop : protected Pace::Rules {
   public:
-    /// recorder  stores the runs. A command is answered after it was stored. nullptr: runs are not stored. It must outlive
-    ///           the loop.
+    /// recorder  stores the runs. A command is answered after it was stored. nullptr: runs are not stored. It must
+    ///           outlive the loop.
     SimulationLoop(const LoopTools& tools, LoopOutputs outputs, simulation::Laboratory laboratory = {},
                    recording::Recorder* recorder = nullptr);
     SimulationLoop(const SimulationLoop&) = delete;

@@ -30,7 +30,8 @@ namespace evod::runtime {
 
 class Simulations {
   public:
-    /// Of the thread of the replays and its pool. Linux then gives them 17 % of a processor that a live world also wants.
+    /// Of the thread of the replays and its pool. Linux then gives them 17 % of a processor that a live world also
+    /// wants.
     static constexpr int replay_niceness = 7;
 
     /// shows_file  there are no live worlds apart from the replay of a run file.

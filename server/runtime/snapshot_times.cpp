@@ -15,8 +15,8 @@ bool SnapshotTimes::is_due(const simulation::World& world, Clock::time_point now
     if (changed_ || newcomers_served_ != demand_->newcomers) {
         return true;
     }
-    // A snapshot may be taken early by 10 % of the interval. Ticks rarely coincide with the planned time, and waiting for
-    // the next tick could delay the snapshot by a whole tick.
+    // A snapshot may be taken early by 10 % of the interval. Ticks rarely coincide with the planned time, and waiting
+    // for the next tick could delay the snapshot by a whole tick.
     return world.moment().tick != shown_tick_ && now + between() / 10 >= next_;
 }
 

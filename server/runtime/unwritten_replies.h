@@ -15,8 +15,8 @@ namespace evod::runtime {
 class UnwrittenReplies {
   public:
     /// Takes the next reply from the outbox. Returns what can be answered now: a reply without a ticket, or the reply
-    /// that waited for this receipt. If a command will never be on the disk, its reply becomes a refusal. Messages between
-    /// the simulation threads must not get here.
+    /// that waited for this receipt. If a command will never be on the disk, its reply becomes a refusal. Messages
+    /// between the simulation threads must not get here.
     std::optional<Answer> pass(Reply reply);
 
   private:

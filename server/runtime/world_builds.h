@@ -1,11 +1,11 @@
-// World builds: construct the worlds of CreateWorld, ResetWorld and ForkWorld. Another thread constructs the large ones,
-// while the simulation thread advances the other worlds.
+// World builds: construct the worlds of CreateWorld, ResetWorld and ForkWorld. Another thread constructs the large
+// ones, while the simulation thread advances the other worlds.
 //
 //   begin → construct, and read the original → finish → adopt, between two ticks
 //
 // Owner        the simulation loop, on the simulation thread.
-// Threads      one build thread, which serves users in turn. It returns the worlds through the mailbox. While it reads a world, that world neither
-//              advances nor changes, because the loop asks holds().
+// Threads      one build thread, which serves users in turn. It returns the worlds through the mailbox. While it reads
+//              a world, that world neither advances nor changes, because the loop asks holds().
 // Order        the loop keeps a command to a world that holds() names until that world is free. So a client sees the
 //              same results as if the world had been constructed at once.
 #pragma once

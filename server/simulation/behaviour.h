@@ -6,9 +6,9 @@
 // 2. Otherwise it steers to seen food: a force along (food − position − velocity · lookahead).
 // 3. Otherwise it wanders: a force in a new uniform direction. It also wanders if the direction in 1 or 2 has length 0.
 //
-// In worlds whose controller is network, a neural network steers each organism instead (brain_kernels.h). It first turns
-// the organism. Newtonian: a force then acts along the new heading, backward if negative. Kinematic: the speed along the
-// heading changes instead; it stays within 0 and the maximum speed.
+// In worlds whose controller is network, a neural network steers each organism instead (brain_kernels.h). It first
+// turns the organism. Newtonian: a force then acts along the new heading, backward if negative. Kinematic: the speed
+// along the heading changes instead; it stays within 0 and the maximum speed.
 //
 // Threads      ranges of organisms are processed in parallel; each organism writes its own force.
 // Determinism  all positions are those at the start of the tick; the draws of an organism are keyed by its id and the

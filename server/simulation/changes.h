@@ -1,5 +1,5 @@
-// Changes: which parameters of a run changed, in which generation, and by whom. Clients mark them in plots. They are not
-// part of the state: no result depends on them.
+// Changes: which parameters of a run changed, in which generation, and by whom. Clients mark them in plots. They are
+// not part of the state: no result depends on them.
 //
 // Owner        World.
 // Threads      none of its own.

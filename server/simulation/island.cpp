@@ -13,8 +13,8 @@
 namespace evod::simulation {
 namespace {
 
-// The kinds of entities in the state hash, except organisms and what they have eaten (6, meals.cpp). The hashes of every
-// run depend on these numbers.
+// The kinds of entities in the state hash, except organisms and what they have eaten (6, meals.cpp). The hashes of
+// every run depend on these numbers.
 enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5, PlacedKind = 7 };
 
 bool is_kinematic(const parameters::Parameters& p) {
@@ -193,7 +193,8 @@ void Island::skip_tick(std::uint32_t tick) {
 /// The work of a tick, in the order of this function:
 /// 1. The list of near pairs is rebuilt if bodies have moved too far. Due items reappear. Where an item has appeared or
 ///    disappeared, the cached perceptions of organisms near it become invalid.
-/// 2. First loop: organisms without a valid perception perceive. All organisms lose health and choose their forces, which
+/// 2. First loop: organisms without a valid perception perceive. All organisms lose health and choose their forces,
+/// which
 ///    change their velocities. Contacts are found.
 /// 3. Contacts are resolved.
 /// 4. Second loop: organisms move. Items that organisms touch, and organisms without health, are found. The block is

@@ -1,8 +1,8 @@
 // Island: one walled rectangle with its organisms, food and poison, and everything that happens there in a tick.
 //
-// docs/MODEL.md, "What happens in a tick", states what happens and in which order. The definition of advance_tick() states
-// how this work is divided into two loops over blocks of organisms. At the end of a tick, the hash of the island is
-// computed.
+// docs/MODEL.md, "What happens in a tick", states what happens and in which order. The definition of advance_tick()
+// states how this work is divided into two loops over blocks of organisms. At the end of a tick, the hash of the island
+// is computed.
 //
 // Organisms are stored strip by strip, in the order of their positions, so that neighbours share cache lines. They are
 // sorted again from time to time as they move. Until the next sorting, a dead organism leaves a void body: an immovable
@@ -49,8 +49,8 @@ class Island {
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                           evolution::NextGeneration bred, base::Executor& executor);
 
-    /// Frees the copies of the weights that networks read. Until begin_generation(), organisms cannot act. Breeding reads
-    /// only the chromosomes, and the weights would be a quarter of the memory that it needs.
+    /// Frees the copies of the weights that networks read. Until begin_generation(), organisms cannot act. Breeding
+    /// reads only the chromosomes, and the weights would be a quarter of the memory that it needs.
     void free_weights() { living_.free_weights(); }
 
     /// Performs one tick. `tick` is its number within the generation, from 1. The island must have living organisms.
@@ -133,8 +133,8 @@ class Island {
     const Items& poison() const { return poison_; }
     const physics::Area& area() const { return area_; }
 
-    // The chromosomes, parents and clamped genes of the organisms, by id. Those that were placed come last. In the first
-    // generation no organism has parents; later, the parents of a placed organism are `no_parents`.
+    // The chromosomes, parents and clamped genes of the organisms, by id. Those that were placed come last. In the
+    // first generation no organism has parents; later, the parents of a placed organism are `no_parents`.
     const evolution::NextGeneration& born() const { return born_; }
     static constexpr evolution::Parents no_parents{~0U, ~0U};
     /// The number of organisms at the beginning of the generation.
@@ -171,8 +171,8 @@ class Island {
     base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                          base::Executor& executor);
     base::StateHash hash_of_boxes() const;
-    /// Returns the hash of what one organism has eaten. It covers only kinds of items whose weight in the fitness is not
-    /// 0; otherwise the numbers of eaten items do not affect the run.
+    /// Returns the hash of what one organism has eaten. It covers only kinds of items whose weight in the fitness is
+    /// not 0; otherwise the numbers of eaten items do not affect the run.
     base::StateHash hash_of_eaten(std::uint32_t id) const;
     base::StateHash whole_hash() const;
     bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }

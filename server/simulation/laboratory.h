@@ -84,8 +84,8 @@ struct Entry {
     bool wants_tick() const;
 };
 
-/// A world that does not run, because it cannot be restored from its run file, or because this file is damaged. It keeps
-/// its name, and counts as a world.
+/// A world that does not run, because it cannot be restored from its run file, or because this file is damaged. It
+/// keeps its name, and counts as a world.
 struct DamagedWorld {
     std::string name;
     std::optional<RunId> run_id; // nullopt: the file cannot be read at all
@@ -164,12 +164,13 @@ class Laboratory {
     /// Advances a world that wants a tick by at most `ticks` >= 1, then calls settle(). Stops at goals, after the first
     /// and the last tick of a generation, and where planned changes take effect, so that every event has its tick.
     void advance(Entry& entry, std::uint64_t ticks, base::Executor& executor);
-    /// Collects the events of a world, and removes the goals that it has reached. To be called after a world has changed.
+    /// Collects the events of a world, and removes the goals that it has reached. To be called after a world has
+    /// changed.
     void settle(Entry& entry);
 
     /// Returns the world with that name. An empty name means the only world or, if there are several, the world
-    /// `default`. If the world is damaged: its refusal. If no world is found: a refusal NOT_FOUND that lists the existing
-    /// names.
+    /// `default`. If the world is damaged: its refusal. If no world is found: a refusal NOT_FOUND that lists the
+    /// existing names.
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
     /// Returns the damaged world with that name, with the same meaning of an empty name; nullptr if there is none.

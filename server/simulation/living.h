@@ -15,9 +15,9 @@ namespace evod::simulation {
 
 enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned, Removed };
 
-/// A heading is at most this far from 0, radians: π, and the error of a tick. The tick adds a turn of up to 629 rad (the
-/// maxima of turn_rate_max_deg_s and tick_s), and then subtracts full turns. Rounding the sum to float, the product of up
-/// to 100 turns, and float's 2π (2.5e-7 too great) contribute errors of up to 3.1e-5, 3.1e-5 and 2.5e-5.
+/// A heading is at most this far from 0, radians: π, and the error of a tick. The tick adds a turn of up to 629 rad
+/// (the maxima of turn_rate_max_deg_s and tick_s), and then subtracts full turns. Rounding the sum to float, the
+/// product of up to 100 turns, and float's 2π (2.5e-7 too great) contribute errors of up to 3.1e-5, 3.1e-5 and 2.5e-5.
 constexpr float heading_max = 3.14159274f + 1e-4f;
 
 /// Element i of every column belongs to the organism with body i; its id is the body's id. Columns are as long as those

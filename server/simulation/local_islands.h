@@ -21,8 +21,8 @@ struct Migrants {
 
 class LocalIslands final : public Islands {
   public:
-    /// Holds the islands [indices.begin, indices.end) of a world. Lists that are passed or returned have one element for
-    /// each of these islands. Commands, routes, island() and founders() name islands by their index in the world.
+    /// Holds the islands [indices.begin, indices.end) of a world. Lists that are passed or returned have one element
+    /// for each of these islands. Commands, routes, island() and founders() name islands by their index in the world.
     LocalIslands(base::Seed seed, base::Range indices);
 
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation, BredIslands bred,
@@ -39,8 +39,8 @@ class LocalIslands final : public Islands {
     }
     /// The same, with migrants from and to other islands of the world.
     ///
-    /// carry  carry(migrants) gets the migrants of each route that begins on one of these islands, by route. It adds those
-    ///        of the routes that end on one of them. Called if there are routes.
+    /// carry  carry(migrants) gets the migrants of each route that begins on one of these islands, by route. It adds
+    ///        those of the routes that end on one of them. Called if there are routes.
     void turn_over(const parameters::Parameters& parameters, std::uint64_t generation,
                    std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
                    const std::function<void(std::vector<Migrants>&)>& carry);

@@ -59,8 +59,8 @@ struct OrganismKernels {
 
     /// Finds the organisms whose view is stale, which means that their element of `others` is negative.
     void (*find_stale)(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale);
-    /// Updates the views of the organisms of [0, end), which are at x, y, after items have changed. A view becomes stale
-    /// if another item may now be the nearest.
+    /// Updates the views of the organisms of [0, end), which are at x, y, after items have changed. A view becomes
+    /// stale if another item may now be the nearest.
     void (*notice)(const std::int32_t* x, const std::int32_t* y, const ViewColumns& view, const ItemChange* changes,
                    std::size_t change_count, std::size_t end);
     /// Subtracts the health that a tick costs, and chooses forces by the rules of behaviour.h. Views must not be stale.

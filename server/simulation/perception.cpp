@@ -25,7 +25,8 @@ namespace {
 // search again soon. A wider search costs more, but is needed less often.
 constexpr float least_skin_px = 24;
 constexpr std::size_t changes_per_piece = 64;
-// Up to this number of bodies, it takes less time to compare each change with all bodies than to find the bodies near it.
+// Up to this number of bodies, it takes less time to compare each change with all bodies than to find the bodies near
+// it.
 constexpr std::size_t few_bodies = 64;
 constexpr float needs_search = -1;
 // The view of a void body, the placeholder of a dead organism: the body has void_position, and the stored item is at 0.

@@ -22,7 +22,8 @@ Refusal refusal(const char* message) {
     return {.code = base::RefusalCode::DataLoss, .message = message, .violations = {}};
 }
 
-/// Calls visit(range, member) for every column, in order. `range` contains the elements; `member` is a member of theirs.
+/// Calls visit(range, member) for every column, in order. `range` contains the elements; `member` is a member of
+/// theirs.
 template <class Island, class Visit>
 void for_each_column(Island& island, Visit&& visit) {
     visit(island.fate.lived_ticks, std::identity{});

@@ -1,4 +1,5 @@
-// Statistics: the results of a generation on an island, those of all ended generations, and the current state of an island.
+// Statistics: the results of a generation on an island, those of all ended generations, and the current state of an
+// island.
 //
 // Determinism  organisms are summed in order of id, in blocks of fixed size; the sums of the blocks are added in order.
 #pragma once

@@ -56,8 +56,8 @@ class World {
     /// parameters        the parameters of generation 1; must be valid.
     /// first_population  the chromosomes of generation 1, valid for these parameters; nullptr: drawn from the seed.
     /// schedule          the schedule of the run; must have the values of `parameters` in generation 1.
-    /// maker             divides the islands among processes; nullptr: they are all in this process. It must outlive the
-    ///                   world.
+    /// maker             divides the islands among processes; nullptr: they are all in this process. It must outlive
+    ///                   the world.
     ///
     /// Throws std::bad_alloc if memory does not suffice.
     World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
@@ -67,8 +67,8 @@ class World {
 
     /// Creates a world at the beginning of a generation of an existing run. It continues exactly as that run did.
     ///
-    /// bred              the organisms of the generation; shape (opening.parameters.active.island_count). The founders are
-    ///                   not needed for the first generation.
+    /// bred              the organisms of the generation; shape (opening.parameters.active.island_count). The founders
+    ///                   are not needed for the first generation.
     /// history           statistics of the previous generations that are available.
     /// first_population  the first population of the run, for resets; nullptr: drawn from the seed.
     World(base::Seed seed, const Opening& opening, BredIslands bred, History history, base::Executor& executor,
@@ -143,8 +143,8 @@ class World {
     /// the ids of the entities.
     EntityIds place(const PlaceEntities& command);
     EntityIds remove(const RemoveEntities& command);
-    /// Sets fitness from a client. check() must have accepted the command (rating.h). After the last missing number, the
-    /// generation is over.
+    /// Sets fitness from a client. check() must have accepted the command (rating.h). After the last missing number,
+    /// the generation is over.
     void set_fitness(const SetFitness& command);
     /// Whether this is the first moment of a generation, and no command has changed the world since.
     bool is_as_begun() const;

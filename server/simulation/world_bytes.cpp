@@ -3,7 +3,8 @@
 namespace evod::simulation {
 namespace {
 
-// Measured: the columns of an entity without its genes, with its places in the grids; the rest of an island and a world.
+// Measured: the columns of an entity without its genes, with its places in the grids; the rest of an island and a
+// world.
 constexpr std::size_t bytes_per_organism = 40, bytes_per_body = 92, bytes_per_item = 40, bytes_per_box = 160;
 constexpr std::size_t bytes_per_island = 25'000, bytes_per_world = 10'000;
 

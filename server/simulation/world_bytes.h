@@ -1,4 +1,5 @@
-// World bytes: an estimate of the memory of a world in this process, to charge it to the client for whom the world exists.
+// World bytes: an estimate of the memory of a world in this process, to charge it to the client for whom the world
+// exists.
 #pragma once
 
 #include "server/simulation/world.h"

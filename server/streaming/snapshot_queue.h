@@ -103,8 +103,8 @@ class SnapshotQueue {
     using Island = SnapshotSubscription::Island;
     /// Puts the waiting snapshot of an island at the end of the queue. It must have no turn.
     void line_up(std::uint32_t subscription_id, std::uint32_t index, Island& island);
-    /// Replaces the delay of a waiting snapshot. If it has no turn, or its turn was postponed, puts it at the end of the
-    /// queue; otherwise it keeps its turn.
+    /// Replaces the delay of a waiting snapshot. If it has no turn, or its turn was postponed, puts it at the end of
+    /// the queue; otherwise it keeps its turn.
     void delay_until(Clock::time_point at, std::uint32_t subscription_id, std::uint32_t index, Island& island);
     /// Notes that a snapshot was sent, which must be acknowledged.
     void await_acknowledgement(Island& island, std::uint64_t sequence);

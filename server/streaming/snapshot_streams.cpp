@@ -14,7 +14,8 @@ namespace {
 /// 1 to 5 ms together.
 constexpr std::size_t steps_at_once = 128;
 
-/// A subscription receives keyframes on request at most once per interval between its snapshots, but at least this often.
+/// A subscription receives keyframes on request at most once per interval between its snapshots, but at least this
+/// often.
 constexpr std::chrono::seconds keyframe_period_max{1};
 
 runtime::Clock::duration between_snapshots(double rate_hz) {

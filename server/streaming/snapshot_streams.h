@@ -45,8 +45,8 @@ class SnapshotStreams {
     void forget(std::uint64_t session);
 
     /// Sends the newest snapshots of a subscription as keyframes, except those of islands of which a keyframe waits
-    /// already. They wait if the subscription has sent such keyframes within the interval between its snapshots. Returns
-    /// their number, with the exceptions; nullopt: the queue has no such subscription.
+    /// already. They wait if the subscription has sent such keyframes within the interval between its snapshots.
+    /// Returns their number, with the exceptions; nullopt: the queue has no such subscription.
     std::optional<std::size_t> send_keyframes(SnapshotQueue& queue, std::uint32_t subscription_id);
     /// Changes the view of a subscription that has one, and sends the newest snapshots again. Returns their number.
     std::size_t set_view(SnapshotQueue& queue, std::uint32_t subscription_id, const v1::View& view);

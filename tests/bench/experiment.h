@@ -30,8 +30,8 @@ inline parameters::Parameters bench_world(std::uint32_t organisms) {
     return parameters;
 }
 
-/// The benchmark world with organisms that are steered by networks of 5-8-2: bearing and proximity of food and poison and
-/// the bias, eight hidden neurons, two outputs.
+/// The benchmark world with organisms that are steered by networks of 5-8-2: bearing and proximity of food and poison
+/// and the bias, eight hidden neurons, two outputs.
 inline parameters::Parameters bench_world(std::uint32_t organisms, evolution::Locomotion locomotion) {
     parameters::Parameters parameters = bench_world(organisms);
     parameters.controller = evolution::Controller::Network;

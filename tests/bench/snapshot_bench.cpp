@@ -1,8 +1,10 @@
-// The work of the network thread for a snapshot, stage by stage, without sending it: quantising what the simulation thread
-// copied, encoding it against the snapshot before, and serialising that with a checksum, uncompressed or with zstd.
+// The work of the network thread for a snapshot, stage by stage, without sending it: quantising what the simulation
+// thread copied, encoding it against the snapshot before, and serialising that with a checksum, uncompressed or with
+// zstd.
 //
 // Benchmarks are named WORLD/COMPRESSION; the counters are nanoseconds of an entity (organisms, food, poison), and
-// bytes per entity. The worlds have 23,000 entities, of which half, a tenth or all move, and are those of `stream_cost.py
+// bytes per entity. The worlds have 23,000 entities, of which half, a tenth or all move, and are those of
+// `stream_cost.py
 // --movers`; snapshots are 3 ticks apart, or 300 to 302, as a world at full speed has them.
 #include "server/base/inline_executor.h"
 #include "server/runtime/snapshot.h"

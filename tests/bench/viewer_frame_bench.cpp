@@ -1,8 +1,8 @@
 // The processor time of the drawing thread per frame: `under_xvfb.sh viewer_frame_bench`.
 //
 // With OpenGL in software, the driver takes most of the time. With driver:0 the calls that upload and draw shapes do
-// nothing: the linker redirects them to this file. Calls of Dear ImGui are not redirected, so the rest is the viewer's own
-// time and a little more.
+// nothing: the linker redirects them to this file. Calls of Dear ImGui are not redirected, so the rest is the viewer's
+// own time and a little more.
 #include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/screen.h"
 
@@ -83,9 +83,9 @@ core::Options no_server() {
     return options;
 }
 
-/// Range 0: organisms; range 1: whether the skin is vivid or classic; range 2: zoom relative to the fitted island; range 3:
-/// whether each frame shows a new snapshot (at 60 frames and 30 snapshots per second every second one does) or interpolates
-/// between two; range 4: whether the driver's calls are made.
+/// Range 0: organisms; range 1: whether the skin is vivid or classic; range 2: zoom relative to the fitted island;
+/// range 3: whether each frame shows a new snapshot (at 60 frames and 30 snapshots per second every second one does) or
+/// interpolates between two; range 4: whether the driver's calls are made.
 void draw_frame(benchmark::State& state) {
     const auto organism_count = static_cast<std::size_t>(state.range(0));
     const bool new_snapshot = state.range(3) != 0;

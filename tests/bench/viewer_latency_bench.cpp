@@ -1,15 +1,15 @@
 // Latencies of evoview with a real evod and a real window: `under_xvfb.sh viewer_latency_bench [ORGANISMS…]`.
 //
-// first      from the start of the connection to the server until the first frame with the world is on the screen; the time
-//            includes the connection, the Hello and the subscription
+// first      from the start of the connection to the server until the first frame with the world is on the screen; the
+//            time includes the connection, the Hello and the subscription
 // step       from a client's command to a paused world until the frame of that one tick is on the screen
-// running    from a tick of a world at 1 or 10 times real time until the first frame with its snapshot is on the screen;
-//            and until the interpolated organisms have reached the snapshot's positions
-// slider     from a slider's release until the server's event that the parameter is set, at real time; and the round trip
-//            of a request
+// running    from a tick of a world at 1 or 10 times real time until the first frame with its snapshot is on the
+//            screen; and until the interpolated organisms have reached the snapshot's positions
+// slider     from a slider's release until the server's event that the parameter is set, at real time; and the round
+//            trip of a request
 //
-// The time of tick n is n / rate after the time of tick 0. Each answer to a query of the tick gives an upper bound for the
-// time of tick 0; the benchmark uses the least of many. A frame is on the screen when display() has returned.
+// The time of tick n is n / rate after the time of tick 0. Each answer to a query of the tick gives an upper bound for
+// the time of tick 0; the benchmark uses the least of many. A frame is on the screen when display() has returned.
 #include "client/core/connection.h"
 #include "client/viewer/panels/parameters_panel.h"
 #include "client/viewer/panes/pane.h"

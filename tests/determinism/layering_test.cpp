@@ -1,10 +1,10 @@
 // Layering: which folders include which, read from the #include and import lines, and what the core may not use.
 //
-// Covered      every .h and .cpp below server/, client/, proto/ and tests/, and every .ts of the browser page: includes and
-//              imports of this project. The core,
-//              server/{base, physics, evolution, parameters, simulation, simulation/shared}: headers and calls that would make a run
-//              depend on time, disk, threads, a device or the last bits of the C library. server/{protocol, run_file,
-//              recording, replay}: sockets. What threads exchange: closures. All: MPI.
+// Covered      every .h and .cpp below server/, client/, proto/ and tests/, and every .ts of the browser page: includes
+//              and imports of this project. The core,
+//              server/{base, physics, evolution, parameters, simulation, simulation/shared}: headers and calls that
+//              would make a run depend on time, disk, threads, a device or the last bits of the C library.
+//              server/{protocol, run_file, recording, replay}: sockets. What threads exchange: closures. All: MPI.
 // Not covered  the contents of library headers; Python and scripts.
 
 #include <gtest/gtest.h>
@@ -34,11 +34,12 @@ struct Source {
     std::string code;                         // without comments
 };
 
-/// The folders of server/, client/viewer/ and client/web/src/ in the order in which ARCHITECTURE.md prints them, from top to bottom.
+/// The folders of server/, client/viewer/ and client/web/src/ in the order in which ARCHITECTURE.md prints them, from
+/// top to bottom.
 ///
-/// In its code blocks, a line such as `server/` or `client/viewer/shell/  …` begins a tree, and an indented line such as
-/// `   runtime/  …` is a folder of that tree. A folder may include only folders of its tree that are printed below it. A
-/// folder within another one is printed above it.
+/// In its code blocks, a line such as `server/` or `client/viewer/shell/  …` begins a tree, and an indented line such
+/// as `   runtime/  …` is a folder of that tree. A folder may include only folders of its tree that are printed below
+/// it. A folder within another one is printed above it.
 const std::vector<std::string>& printed_folders() {
     static const std::vector<std::string> all = [] {
         static const std::regex top{R"(^((?:\w+/)+)(?:\w+\.cpp)?(?:\s.*)?$)"},
@@ -285,7 +286,8 @@ TEST(Layering, IncludesFormNoCircle) {
     EXPECT_EQ(circle_in(arrows), "");
 }
 
-/// The sources of the browser page, and the sources that each of them imports, as paths below client/web/src/ without ".ts".
+/// The sources of the browser page, and the sources that each of them imports, as paths below client/web/src/ without
+/// ".ts".
 Arrows imports_of_page() {
     static const std::regex import{R"x((?:from|import)\s*\(?\s*"(\.[^"]+)")x"};
     const fs::path page = root / "client/web/src";

@@ -1,9 +1,9 @@
-// Framing: any bytes, cut in any way, give the same frames and the same damage. The content of a frame is parsed as both ends
-// parse it.
+// Framing: any bytes, cut in any way, give the same frames and the same damage. The content of a frame is parsed as
+// both ends parse it.
 //
-// The first byte selects the limits. The bytes themselves select the cuts; short inputs are also cut at every byte. One input
-// in 32, selected the same way, is cut in every way: up to 8 bytes in all 2^(n-1) ways; up to 16, which is a header, a body and
-// the beginning of the next frame, at all pairs of places; up to 64 at each place.
+// The first byte selects the limits. The bytes themselves select the cuts; short inputs are also cut at every byte. One
+// input in 32, selected the same way, is cut in every way: up to 8 bytes in all 2^(n-1) ways; up to 16, which is a
+// header, a body and the beginning of the next frame, at all pairs of places; up to 64 at each place.
 #include "proto/codec/framing.h"
 
 #include "evod/v1/session.pb.h"

@@ -1,7 +1,7 @@
 // Fuzz run file: reads, checks and exports any bytes as a run file, or refuses them.
 //
-// The first byte selects what the others are: the file itself; bytes to change in a sound file; columns to change in its
-// rows, which then get right checksums; or the text of a trigger, view or index to add, with which the file must be
+// The first byte selects what the others are: the file itself; bytes to change in a sound file; columns to change in
+// its rows, which then get right checksums; or the text of a trigger, view or index to add, with which the file must be
 // refused. It also selects whether the sound file is of a run from its first generation on, or of a fork.
 #include "evod/v1/commands.pb.h"
 #include "server/base/inline_executor.h"

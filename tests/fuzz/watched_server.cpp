@@ -13,7 +13,8 @@
 #include <variant>
 #include <vector>
 
-// ---- replacements that make a script reproducible --------------------------------------------------------------------------
+// ---- replacements that make a script reproducible
+// --------------------------------------------------------------------------
 
 evod::support::ManualClock& evod::fuzz::clock() {
     static support::ManualClock clock;

@@ -77,7 +77,8 @@ std::string_view name_of(Ramp ramp);
 
 /// Returns the colour at `share` of the ramp, clamped to 0 to 1; `unknown` if `share` is not a number.
 ///
-/// Source   viridis and cividis: every 15th of the 256 colours of matplotlib, interpolated linearly. Viridis: S. van der Walt and N. Smith,
+/// Source   viridis and cividis: every 15th of the 256 colours of matplotlib, interpolated linearly. Viridis: S. van
+///          der Walt and N. Smith,
 ///          2015. Cividis: Nuñez, Anderton & Renslow 2018, PLoS ONE 13(7), doi:10.1371/journal.pone.0199239.
 Colour at(Ramp ramp, double share);
 

@@ -15,8 +15,8 @@ using codec::ReceivedSnapshot;
 /// An organism moves less than this between two compared snapshots, in px.
 constexpr float moved_px_max = 100;
 
-/// Calls `act` with the index of each entity of `before` that is not in `after`, or is there at another place if `moves`
-/// is false.
+/// Calls `act` with the index of each entity of `before` that is not in `after`, or is there at another place if
+/// `moves` is false.
 template <class Act>
 void for_each_gone(const Entities& before, const Entities& after, bool moves, Act act) {
     for (std::size_t i = 0, j = 0; i < before.id.size(); ++i) {

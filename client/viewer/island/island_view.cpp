@@ -297,7 +297,8 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     update_stream(world, camera, now);
 }
 
-/// The number of genes in the cycle of colourings: those of the body, which come first. Weights of a brain are too many.
+/// The number of genes in the cycle of colourings: those of the body, which come first. Weights of a brain are too
+/// many.
 std::size_t IslandView::cycled_genes() const {
     const std::size_t body = genes_of(gene_groups_, evod::v1::GENE_GROUP_BODY).count;
     return body > 0 ? std::min(body, gene_names_.size()) : gene_names_.size();

@@ -111,12 +111,12 @@ class IslandView {
     }
     /// Returns why the population is unknown, as a sentence. Empty if it is known or has been requested.
     std::string problem() const { return population_poll_.problem(); }
-    /// Returns the lineages of population(), and the generation of the ancestors from which they are counted. The number
-    /// of a founder is its index in this generation, counted island after island.
+    /// Returns the lineages of population(), and the generation of the ancestors from which they are counted. The
+    /// number of a founder is its index in this generation, counted island after island.
     const Families& families() const { return families_; }
     std::uint64_t families_since() const { return families_since_; }
-    /// Returns whether lineage_base_of() knows every generation in lineage(). Not between an answer of the server and the
-    /// next update().
+    /// Returns whether lineage_base_of() knows every generation in lineage(). Not between an answer of the server and
+    /// the next update().
     bool lineage_is_current() const {
         return lineage_version_ == lineage().version() && lineage_bases_.empty() == lineage().empty();
     }

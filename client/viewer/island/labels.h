@@ -11,7 +11,8 @@
 
 namespace evod::viewer {
 
-/// The number of an organism, to be placed: the centre and radius of its organism on the screen, and the width of its text, in pixels.
+/// The number of an organism, to be placed: the centre and radius of its organism on the screen, and the width of its
+/// text, in pixels.
 struct HealthLabel {
     Point centre;
     double radius = 0, width = 0;

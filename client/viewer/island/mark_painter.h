@@ -1,5 +1,5 @@
-// MarkPainter: draws marks of an island among widgets, for legends. It uses the styles and the shaders of the island, so
-// a legend always matches the island.
+// MarkPainter: draws marks of an island among widgets, for legends. It uses the styles and the shaders of the island,
+// so a legend always matches the island.
 //
 // Owner        WindowRenderer, Summary.
 // Needs        the OpenGL context of the Gui, from the first frame with a mark to destruction.

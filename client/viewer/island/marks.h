@@ -68,8 +68,8 @@ void add_headings(const Positions& organisms, std::span<const Shape> discs, cons
 void set_health(const codec::Entities& organisms, double full_health, std::vector<Shape>& discs);
 
 void add_health_colours(const codec::Entities& organisms, const ColourScale& scale, std::vector<Colour>& colours);
-/// Adds the colour of each organism. An organism that is not in the population or families gets palette::unknown, also in
-/// add_family_colours().
+/// Adds the colour of each organism. An organism that is not in the population or families gets palette::unknown, also
+/// in add_family_colours().
 void add_gene_colours(const codec::Entities& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours);
 void add_family_colours(const codec::Entities& organisms, const Families& families, const FamilyColours& of_family,
@@ -134,8 +134,8 @@ inline bool shows_details(const Camera& camera) {
 }
 /// While organisms are too small to see, at most about this many dots of food are drawn, and of poison.
 constexpr std::size_t item_dots_max = 10'000;
-/// Keeps this share of the items, if it is below 1. Whether an item is kept depends only on its place, so that the choice
-/// stays the same while others appear and disappear.
+/// Keeps this share of the items, if it is below 1. Whether an item is kept depends only on its place, so that the
+/// choice stays the same while others appear and disappear.
 void keep_share(double share, std::vector<Shape>& items);
 
 /// Trails and flashes are shown if a snapshot contains fewer organisms than this.
@@ -144,8 +144,8 @@ inline bool shows_traces(const Camera& camera, const codec::ReceivedSnapshot& sn
     return shows_details(camera) && snapshot.entities->organisms.x.size() < traced_max;
 }
 
-/// The greatest number of visible organisms that are streamed and drawn as moving dots. A dot takes two bytes, and there
-/// are several items for each organism; 30 snapshots per second of such a world are about 9 MB/s.
+/// The greatest number of visible organisms that are streamed and drawn as moving dots. A dot takes two bytes, and
+/// there are several items for each organism; 30 snapshots per second of such a world are about 9 MB/s.
 constexpr double dots_max = 30'000;
 /// Returns whether there are too many visible organisms for dots: more than dots_max, or more than one per pixel.
 ///

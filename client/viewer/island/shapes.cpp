@@ -16,8 +16,8 @@ namespace evod::viewer {
 
 namespace {
 
-// Reads a shape, after shape.vert.glsl. The shader subtracts the camera's centre from a position before it multiplies by the
-// zoom. The difference of nearby positions is exact in floats, but each product would be rounded.
+// Reads a shape, after shape.vert.glsl. The shader subtracts the camera's centre from a position before it multiplies
+// by the zoom. The difference of nearby positions is exact in floats, but each product would be rounded.
 constexpr const char* read_source = R"(
 uniform samplerBuffer shapes;        // centre and half size; for lines and arrows, begin and end
 uniform samplerBuffer colours;

@@ -33,8 +33,8 @@ class Builder {
     Builder(BrainDiagram& diagram, std::span<const float> weights, float scale)
         : diagram_{diagram}, weights_{weights}, scale_{scale} {}
 
-    /// Adds a layer with equal distances between its neurons, and a bias below it if `has_bias`. Returns the indices of its
-    /// first neuron, and of the one after its last.
+    /// Adds a layer with equal distances between its neurons, and a bias below it if `has_bias`. Returns the indices of
+    /// its first neuron, and of the one after its last.
     template <class Name>
     std::pair<std::size_t, std::size_t> add_layer(NeuronKind kind,
                                                   const google::protobuf::RepeatedField<float>& activations,

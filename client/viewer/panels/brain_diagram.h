@@ -1,5 +1,5 @@
-// BrainDiagram: draws the neural network of an organism. Each neuron has the colour of its activation; each line has the
-// colour of its weight's sign, and is the wider, the larger the weight is.
+// BrainDiagram: draws the neural network of an organism. Each neuron has the colour of its activation; each line has
+// the colour of its weight's sign, and is the wider, the larger the weight is.
 //
 // Positive numbers are orange and negative ones blue, which every kind of colour vision distinguishes.
 //

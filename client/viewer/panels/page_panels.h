@@ -1,5 +1,5 @@
-// Page panels: the panels that only the page in the browser has. Their keys and widgets belonged to evoview once; keys and
-// scripts that name them get an answer that leads to the page.
+// Page panels: the panels that only the page in the browser has. Their keys and widgets belonged to evoview once; keys
+// and scripts that name them get an answer that leads to the page.
 //
 // Owner        none: functions.
 // Threads      any.
@@ -12,7 +12,8 @@ namespace evod::viewer {
 
 /// The tab of the page that took over this function key of evoview: "Glass box" for 8; empty: none.
 std::string_view page_panel_at(unsigned function_key);
-/// The tab of the page that has what a script names: "Glass box" for "Glass box/Play" and for "hold the world"; empty: none.
+/// The tab of the page that has what a script names: "Glass box" for "Glass box/Play" and for "hold the world"; empty:
+/// none.
 std::string_view page_panel_with(std::string_view widget);
 
 /// "The panel Glass box is in the browser page: open http://127.0.0.1:7745/#world=default and choose Glass box"

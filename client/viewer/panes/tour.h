@@ -1,5 +1,5 @@
-// Tour: a few callouts that explain the window to a new user, one after another, each beside the widget that it is about.
-// evoview shows it once, at its first start; the help shows it again.
+// Tour: a few callouts that explain the window to a new user, one after another, each beside the widget that it is
+// about. evoview shows it once, at its first start; the help shows it again.
 //
 // Owner        Overlay.
 // Threads      none; used on the drawing thread.
@@ -20,8 +20,8 @@ class Tour {
     bool shown() const { return step_.has_value(); }
     void skip() { step_.reset(); }
 
-    /// → and Enter show the next callout, ← the previous one, Esc ends the tour. Returns false for other keys, and while
-    /// the tour is not shown.
+    /// → and Enter show the next callout, ← the previous one, Esc ends the tour. Returns false for other keys, and
+    /// while the tour is not shown.
     bool handle(sf::Keyboard::Key key);
 
     /// Draws the current callout. Call between Gui::begin() and Gui::draw().

@@ -22,7 +22,8 @@ void clear(Colour colour, const WindowRenderer::Frame& frame) {
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
-/// Returns the point of an island at a point of the screen, and what is drawn there; nullopt if the island is not there.
+/// Returns the point of an island at a point of the screen, and what is drawn there; nullopt if the island is not
+/// there.
 std::optional<MouseTool::Target> target_at(Point screen, std::uint32_t island, const core::SnapshotInterpolator& view,
                                            double blend, const Camera& camera) {
     const codec::ReceivedSnapshot* snapshot = view.latest().get();

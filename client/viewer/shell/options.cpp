@@ -57,8 +57,8 @@ std::string parse_size(const std::string& text, Options::Size& size) {
            std::to_string(pixels_max);
 }
 
-/// Sets `value` to the value with this name; leaves it if `text` is empty. Returns an error message; empty if the name is
-/// known.
+/// Sets `value` to the value with this name; leaves it if `text` is empty. Returns an error message; empty if the name
+/// is known.
 template <class Value>
 std::string parse_name(const std::string& text, const std::array<std::string_view, 2>& names,
                        std::optional<Value>& value) {

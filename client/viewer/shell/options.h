@@ -70,8 +70,8 @@ inline bool wants_tour(const Options& options, bool seen) {
 /// Returns the world for the first pane.
 WantedWorld wanted_of(const Options& options, double rate_hz = WantedWorld{}.rate_hz);
 
-/// Returns the stored view options with the skin and the background of the command line. Another skin than the stored one
-/// is shown with its default options.
+/// Returns the stored view options with the skin and the background of the command line. Another skin than the stored
+/// one is shown with its default options.
 ViewOptions view_of(const Options& options, const ViewOptions& stored = {});
 
 /// Returns the options. If help, the version or an error was printed, returns the exit status instead.

@@ -367,8 +367,8 @@ std::optional<core::Result<Script::IslandPlace>> island_place(std::string_view k
 
 namespace {
 
-/// Returns whether two values of a widget are equal: as numbers if both are numbers, otherwise as text, in which _ counts
-/// as a space. Sliders store some numbers with single precision.
+/// Returns whether two values of a widget are equal: as numbers if both are numbers, otherwise as text, in which _
+/// counts as a space. Sliders store some numbers with single precision.
 bool same_value(const std::string& a, const std::string& b) {
     constexpr double tolerance = 1e-6;
     const auto x = number_in<double>(a), y = number_in<double>(b);

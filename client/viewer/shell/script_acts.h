@@ -1,5 +1,5 @@
-// Script acts: the keys, clicks and texts that the lines of a script send to the window, and the checks that they had an
-// effect.
+// Script acts: the keys, clicks and texts that the lines of a script send to the window, and the checks that they had
+// an effect.
 //
 // A line is divided into acts. At least one frame is drawn after each act, so that the next act sees its effect.
 //

@@ -1,4 +1,4 @@
-// Experiment: explains to a newcomer what the organisms of the viewed world try to do, using the world's parameters.
+// Experiment: the sentences of the server about what the organisms of the viewed world try to do.
 //
 // Owner        the summary in the sidebar.
 // Threads      none; used by the thread that draws.
@@ -11,10 +11,6 @@
 #include <string>
 
 namespace evod::viewer {
-
-/// Returns the sentences for a complete set of parameters: "50 organisms seek food (+25 health) and avoid poison (−40).
-/// …".
-std::string experiment_text(const evod::v1::ParameterSet& set);
 
 class Experiment {
   public:

@@ -13,8 +13,8 @@
 
 namespace evod::viewer {
 
-/// Returns the indices of the `count` healthiest organisms, or of all if there are fewer; the healthiest first, and those
-/// with equal health by id.
+/// Returns the indices of the `count` healthiest organisms, or of all if there are fewer; the healthiest first, and
+/// those with equal health by id.
 std::vector<std::size_t> healthiest(const codec::Entities& organisms, std::size_t count);
 
 /// Ranks the organisms of a snapshot once, although several parts of the viewer show the healthiest in every frame.

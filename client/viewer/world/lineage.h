@@ -1,7 +1,8 @@
 // Lineage: the parents of the organisms of a run, generation by generation, on all islands.
 //
 // It is read from the lineage table that the server exports (ExportRun). The table contains the real parents also where
-// migrants have replaced organisms. At most `organisms_max` organisms are kept; then the oldest generations are removed.
+// migrants have replaced organisms. At most `organisms_max` organisms are kept; then the oldest generations are
+// removed.
 //
 // An organism is identified by its generation and its index there: organisms are numbered from 0, island after island,
 // as the founders in GetPopulation are.

@@ -8,7 +8,8 @@ namespace evod::viewer {
 
 namespace {
 
-/// Whether one founder has nearly all organisms. The numbers of founders are less than `founder_count`, or Lineage::none.
+/// Whether one founder has nearly all organisms. The numbers of founders are less than `founder_count`, or
+/// Lineage::none.
 bool taken_over(std::span<const std::uint32_t> founders, std::size_t founder_count) {
     std::vector<std::uint32_t> sizes(founder_count);
     std::uint32_t most = 0;

@@ -23,8 +23,8 @@ class LineagePoll {
 
     /// Sends a request when one is due. Clears all data if another run is shown. Call it once per frame.
     ///
-    /// wanted  whether a new export may begin. An export that has begun is read to its end. If the server stores no runs,
-    ///         nothing is sent again until `wanted` has been false.
+    /// wanted  whether a new export may begin. An export that has begun is read to its end. If the server stores no
+    ///         runs, nothing is sent again until `wanted` has been false.
     void update(ViewedWorld& world, bool wanted, Clock::time_point now);
 
     const Lineage& lineage() const { return lineage_; }

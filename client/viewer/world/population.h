@@ -41,8 +41,8 @@ class Population {
     std::uint64_t generation() const { return generation_; } // 0 before the first page
     std::uint64_t generation_tick() const { return generation_tick_; }
     std::size_t size() const { return choices_.size(); }
-    /// Returns whether this page cannot follow the earlier ones, because another generation has begun or an organism was
-    /// placed since then.
+    /// Returns whether this page cannot follow the earlier ones, because another generation has begun or an organism
+    /// was placed since then.
     bool is_outdated_by(const evod::v1::Population& page) const {
         return begun_ && (page.generation() != generation_ || page.organism_count() != organism_count_);
     }

@@ -1,8 +1,9 @@
 // PopulationPoll: requests the organisms of an island page by page until the whole population of one generation has
 // been received.
 //
-// If the generation ends or an organism is placed between two pages, the poll waits and then starts again with the first page. Without this
-// wait, a large population of a fast world would be requested continuously and use the bandwidth of the snapshots.
+// If the generation ends or an organism is placed between two pages, the poll waits and then starts again with the
+// first page. Without this wait, a large population of a fast world would be requested continuously and use the
+// bandwidth of the snapshots.
 //
 // Owner        the panel or IslandView that shows the population.
 // Threads      none; used by the thread that draws.

@@ -7,8 +7,8 @@
 
 namespace evod::viewer {
 
-/// Returns the folder evod in the folder that an environment variable names, or else in a folder of HOME. Empty if HOME is
-/// not set either. The specification requires that a relative path in the variable is ignored.
+/// Returns the folder evod in the folder that an environment variable names, or else in a folder of HOME. Empty if HOME
+/// is not set either. The specification requires that a relative path in the variable is ignored.
 ///
 /// variable      "XDG_STATE_HOME"
 /// below_home    ".local/state"

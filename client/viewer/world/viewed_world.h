@@ -60,8 +60,8 @@ class ViewedWorld {
     /// Shows the first tick of a generation of the run, in a replay.
     void show_generation(std::uint64_t generation);
 
-    /// A link that shows this moment in a browser. Empty if the server has no page that this machine can reach, or if no
-    /// snapshot has arrived.
+    /// A link that shows this moment in a browser. Empty if the server has no page that this machine can reach, or if
+    /// no snapshot has arrived.
     std::string link() const;
     /// A link that shows the live world in a browser, as it runs. Empty if the server has no page that this machine can
     /// reach.

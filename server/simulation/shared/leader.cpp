@@ -12,8 +12,8 @@
 namespace evod::simulation::shared {
 namespace {
 
-/// The islands of a world of rank 0 that several processes simulate. What concerns the other processes, they are ordered
-/// to perform with the part of rank 0. An island of another process is brought here as a copy when it is read.
+/// The islands of a world of rank 0 that several processes simulate. What concerns the other processes, they are
+/// ordered to perform with the part of rank 0. An island of another process is brought here as a copy when it is read.
 class SharedIslands final : public Islands {
   public:
     SharedIslands(Leader& leader, Leader::WorldNumber number, base::Seed seed, std::uint32_t island_count)

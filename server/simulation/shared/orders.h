@@ -1,8 +1,8 @@
 // Orders: what rank 0 has the other processes do with their islands of a world, and the fields of what they send each
 // other.
 //
-// The fields of each struct are declared once, for packing and for unpacking (base/packing.h); a struct of numbers needs no
-// declaration. IslandState has bytes of its own (state_bytes.h).
+// The fields of each struct are declared once, for packing and for unpacking (base/packing.h); a struct of numbers
+// needs no declaration. IslandState has bytes of its own (state_bytes.h).
 #pragma once
 
 #include "server/base/packing.h"

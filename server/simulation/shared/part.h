@@ -1,7 +1,7 @@
 // Part: the islands of a shared world that one process simulates.
 //
-// All processes call the same functions in the same order. Each function sends what the other processes need, and returns
-// when all have called it. Results are complete on rank 0; the other processes ignore them.
+// All processes call the same functions in the same order. Each function sends what the other processes need, and
+// returns when all have called it. Results are complete on rank 0; the other processes ignore them.
 //
 // Owner        the islands of a world on rank 0, follow() in the other processes.
 // Threads      one at a time.

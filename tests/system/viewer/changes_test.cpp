@@ -1,5 +1,5 @@
-// What a user changes from the window of evoview: worlds, the freezer, and what is on an island. Scripts drive the window;
-// the test asks evod for the effect.
+// What a user changes from the window of evoview: worlds, the freezer, and what is on an island. Scripts drive the
+// window; the test asks evod for the effect.
 //
 // Runs under Xvfb.
 #include "client/viewer/panels/freezer_panel.h"

@@ -1,5 +1,5 @@
-// Worlds whose organisms are steered by networks, as evoview shows them: headings on the island, the network of the selected
-// organism with the activations that the server computes, and long chromosomes in the plots.
+// Worlds whose organisms are steered by networks, as evoview shows them: headings on the island, the network of the
+// selected organism with the activations that the server computes, and long chromosomes in the plots.
 //
 // Runs under Xvfb.
 #include "client/viewer/island/styles.h"

@@ -1,5 +1,5 @@
-// evoview with replays, two worlds side by side, and all islands of a world: each part of the frame matches the server's
-// snapshot.
+// evoview with replays, two worlds side by side, and all islands of a world: each part of the frame matches the
+// server's snapshot.
 //
 // Runs under Xvfb.
 #include "client/viewer/drawing/window_layout.h"

@@ -1,5 +1,5 @@
-// Nine tasks of a lesson in a real window. Each takes at most three actions from the first screen: clicks, keys and typed
-// texts. docs/VIEWER.md lists the tasks with their actions.
+// Nine tasks of a lesson in a real window. Each takes at most three actions from the first screen: clicks, keys and
+// typed texts. docs/VIEWER.md lists the tasks with their actions.
 //
 // Runs under Xvfb.
 #include "tests/system/viewer/support/processes.h"

@@ -31,7 +31,8 @@ class Plots(page.Case):
         server = self.plots()
         table = self.evoctl(server, "history", "--csv")
         heading, *rows = table.splitlines()
-        sweep = "\n".join(["# evod sweep", f"replicate,{heading}", *(f"{run},{row}" for run in (0, 1) for row in rows)])
+        both = [f"{run},{row}" for run in (0, 1) for row in rows]
+        sweep = "\n".join(["# evod sweep", f"replicate,{heading}", *both])
         field = self.browser.element(".plots input[type=file]")
         field.send_keys(self.file("saved.csv", table))
         self.browser.wait_for_text("Dashed: saved.csv", ".plots")
@@ -45,13 +46,15 @@ class Plots(page.Case):
         self.assertEqual(self.browser.text(".plots [role=alert]"), "")
         self.browser.press("Remove", ".plots")
         self.browser.wait("!document.querySelector('.plots-file').checkVisibility()", "no compared file")
-        self.browser.wait("!document.querySelector('.plots .plot-legend').innerText.includes('runs.csv')", "no dashed lines")
+        self.browser.wait("!document.querySelector('.plots .plot-legend').innerText.includes('runs.csv')",
+                          "no dashed lines")
 
     def test_a_dropped_table_is_compared(self):
         server = self.plots()
         self.browser.run("""const transfer = new DataTransfer();
             transfer.items.add(new File([arguments[0]], "dropped.csv"));
-            document.querySelector(".plots").dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true }));""",
+            const drop = new DragEvent("drop", { dataTransfer: transfer, bubbles: true });
+            document.querySelector(".plots").dispatchEvent(drop);""",
                          self.evoctl(server, "history", "--csv"))
         self.browser.wait_for_text("Dashed: dropped.csv", ".plots")
 
@@ -67,7 +70,7 @@ class Plots(page.Case):
             motion = control.call(get_motion=page.c.GetMotion(world="default")).motion
             self.assertEqual((motion.tick, motion.body_count), (tick, 33))
             shown = f"{motion.kinetic_energy:.6g}"
-            self.browser.wait("document.querySelector('.physics .plot-area').getAttribute('aria-label').replaceAll(',', '')"
+            self.browser.wait("document.querySelector('.physics .plot-area').ariaLabel.replaceAll(',', '')"
                               ".includes(arguments[0])", f"the energy at tick {tick}", f"kinetic energy: {shown} kg")
         self.browser.wait_for_text("The tick is short enough", ".physics .good")
 

@@ -136,6 +136,7 @@ class Tasks(Case):
     def test_see_why_an_organism_was_chosen(self):
         child = self.child()
         self.click_organism(child.id)
+        self.browser.wait_for_text(f"Why {child.parents[0]}?", "[data-panel=organism]")  # its code is loaded first
         self.press(f"Why {child.parents[0]}?", "[data-panel=organism]")
         self.browser.wait_for_text(f"in the slot of organism {child.parents[0]}", "[data-panel='glass box']")
 

@@ -1,8 +1,8 @@
-// The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes exactly to the content of its line, and every
-// mutation of mutations.txt is refused or decodes to the content with the listed checksum.
+// The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes exactly to the content of its line, and
+// every mutation of mutations.txt is refused or decodes to the content with the listed checksum.
 //
-// The verdicts in mutations.txt are those of this decoder. EVOD_RECORD=1 unit_codec --gtest_filter='*Mutations*' writes the
-// file again.
+// The verdicts in mutations.txt are those of this decoder. EVOD_RECORD=1 unit_codec --gtest_filter='*Mutations*' writes
+// the file again.
 
 #include "proto/codec/compression.h"
 #include "proto/codec/delta_codec.h"
@@ -375,8 +375,8 @@ evod::v1::SnapshotFrame mutated(evod::v1::SnapshotFrame frame, const Mutation& m
     return frame;
 }
 
-/// Returns the CRC-32 of all numbers as u32: for each kind its count, then the columns id (not of boxes), x, y, radius or
-/// half width, health or half height, and heading, as the kind has them; then the cells of each density.
+/// Returns the CRC-32 of all numbers as u32: for each kind its count, then the columns id (not of boxes), x, y, radius
+/// or half width, health or half height, and heading, as the kind has them; then the cells of each density.
 std::string checksum_of_content(const ReceivedSnapshot& snapshot) {
     std::string bytes;
     const auto append = [&bytes](const auto& column) {

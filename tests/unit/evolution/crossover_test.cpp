@@ -166,8 +166,8 @@ double subsets(unsigned count, unsigned chosen) {
 
 TEST(Crossover, MultiPointCutsAnyNumberOfGenesEquallyOften) {
     // Law: each set of k of the genes − 1 cuts equally likely, so the r-th cut is before gene m with probability
-    // C(m − 1, r − 1) C(genes − 1 − m, k − r) / C(genes − 1, k). Chi-square over m, for each r. 1,328 genes are the most
-    // that a chromosome can have.
+    // C(m − 1, r − 1) C(genes − 1 − m, k − r) / C(genes − 1, k). Chi-square over m, for each r. 1,328 genes are the
+    // most that a chromosome can have.
     for (const unsigned genes : {10u, 64u, 65u, 328u, 1328u}) {
         for (unsigned cuts = 2; cuts <= 5; ++cuts) {
             const Crossover<> crossover{with(CrossoverMethod::MultiPoint, cuts), genes};
@@ -221,8 +221,8 @@ RC_GTEST_PROP(Crossover, ChildrenAreComplementary, ()) {
 }
 
 TEST(Crossover, BlendDrawsAUniformWeight) {
-    // Law: with probability 0.8 uniform in (0, 1), otherwise no crossover. Chi-square over 100 cells and the pairs without
-    // crossover, 100 degrees of freedom.
+    // Law: with probability 0.8 uniform in (0, 1), otherwise no crossover. Chi-square over 100 cells and the pairs
+    // without crossover, 100 degrees of freedom.
     for (const unsigned genes : {6u, 10u, 64u, 65u, 328u}) {
         const Crossover<> crossover{with(CrossoverMethod::Blend, 2, 0.8), genes};
         std::vector<std::uint64_t> counts(101);

@@ -184,9 +184,9 @@ TEST(Reset, IsUniformWithinTheBoundsOfEachGene) {
 }
 
 TEST(Scale, MultipliesOneGeneByAUniformFactor) {
-    // Law: with probability 0.6 one of the 6 genes, each equally likely, is multiplied by a factor uniform in (0.75, 1.25).
-    // Chi-square over 6 × 50 cells and the chromosomes without a change, 300 degrees of freedom; the factor of 1 itself has
-    // probability 1e-7.
+    // Law: with probability 0.6 one of the 6 genes, each equally likely, is multiplied by a factor uniform in (0.75,
+    // 1.25). Chi-square over 6 × 50 cells and the chromosomes without a change, 300 degrees of freedom; the factor of 1
+    // itself has probability 1e-7.
     Parameters parameters = still();
     parameters.scale_chance = 0.6;
     parameters.scale_range = 0.25;
@@ -380,8 +380,8 @@ TEST(WideCreep, StepsAreUniformWithinTheStepOfTheGroup) {
 }
 
 TEST(WideCreep, EachGeneMutatesWithItsChanceIndependently) {
-    // Law: each gene with probability 0.15: chi-square with one degree of freedom per gene. The number of mutated genes is
-    // binomial: chi-square over its values.
+    // Law: each gene with probability 0.15: chi-square with one degree of freedom per gene. The number of mutated genes
+    // is binomial: chi-square over its values.
     for (const unsigned genes : wide_gene_counts) {
         Parameters parameters = wide_parameters(genes);
         parameters.mutation_chance = 0.15;
@@ -403,7 +403,8 @@ TEST(WideCreep, EachGeneMutatesWithItsChanceIndependently) {
 }
 
 TEST(WideReset, IsUniformWithinTheBoundsOfEachGene) {
-    // Law: with probability 0.5 uniform in the gene's bounds. Chi-square over 1 + 20 cells, 20 degrees of freedom per gene.
+    // Law: with probability 0.5 uniform in the gene's bounds. Chi-square over 1 + 20 cells, 20 degrees of freedom per
+    // gene.
     std::vector<double> law(21, 0.5 / 20);
     law[20] = 0.5;
     for (const unsigned genes : wide_gene_counts) {

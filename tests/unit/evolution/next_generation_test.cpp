@@ -333,8 +333,8 @@ TEST(NextGeneration, BlendedSiblingsKeepTheMeanOfTheirParents) {
 }
 
 TEST(NextGeneration, BlendKeepsTwoThirdsOfTheVariance) {
-    // Law: E(w² + (1 − w)²) = 2/3 for w uniform in (0, 1). With 100,000 pairs of children, the standard error of the ratio
-    // is below 0.003; the test allows five standard errors.
+    // Law: E(w² + (1 − w)²) = 2/3 for w uniform in (0, 1). With 100,000 pairs of children, the standard error of the
+    // ratio is below 0.003; the test allows five standard errors.
     Parameters parameters = without_mutation();
     parameters.crossover = CrossoverMethod::Blend;
     parameters.population_model = PopulationModel::Generational;

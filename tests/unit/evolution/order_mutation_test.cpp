@@ -176,8 +176,8 @@ std::pair<std::size_t, std::size_t> moved_ends(const std::vector<std::uint32_t>&
 }
 
 TEST(WideSwap, TradesOneOrTwoPairsWithEvenChance) {
-    // Law: half of a uniform transposition, half of the product of two. Chi-square over the pairs, and the products by the
-    // number of genes that moved: none, three or four.
+    // Law: half of a uniform transposition, half of the product of two. Chi-square over the pairs, and the products by
+    // the number of genes that moved: none, three or four.
     for (const unsigned genes : wide_gene_counts) {
         const std::size_t pairs = genes * (genes - 1) / 2;
         std::vector<std::uint64_t> counts(pairs + 3);

@@ -27,8 +27,8 @@ TEST_F(RecorderTest, ABredGenerationIsRecordedWithItsFirstTick) {
     ASSERT_TRUE(archive) << to_text(archive.error());
     const simulation::Laboratory laboratory = (*archive)->take_laboratory();
     const simulation::World& world = (*laboratory.find("w"))->world;
-    // If recovery stopped at tick 120 with the second generation bred, a command that was applied before the breeding would
-    // come too late for it.
+    // If recovery stopped at tick 120 with the second generation bred, a command that was applied before the breeding
+    // would come too late for it.
     EXPECT_EQ(world.moment().tick, 121u);
     EXPECT_EQ(world.moment().generation_tick, 1u);
 }

@@ -460,8 +460,8 @@ TEST_F(StorageThreadTest, ACheckpointOfAPurgedGenerationIsNotWritten) {
     EXPECT_TRUE(check(**file));
 }
 
-/// Runs of some commits, with checkpoints. In each run one operation of the disk fails, until a run has too few operations
-/// for one to fail. Every day only each eighth operation fails: all of them take two minutes.
+/// Runs of some commits, with checkpoints. In each run one operation of the disk fails, until a run has too few
+/// operations for one to fail. Every day only each eighth operation fails: all of them take two minutes.
 class FailingDisk : public StorageThreadTest, public testing::WithParamInterface<Failure> {};
 
 TEST_P(FailingDisk, EverythingIsWrittenInTheEnd) {

@@ -1,8 +1,8 @@
-// Damaged run files: flips bits and truncates files that a server closed, and files with a write-ahead log that a killed
-// server left. FLIPS and CUTS are the numbers of cases for each kind of file.
+// Damaged run files: flips bits and truncates files that a server closed, and files with a write-ahead log that a
+// killed server left. FLIPS and CUTS are the numbers of cases for each kind of file.
 //
-// The result is never a wrong world. Damage is reported; or it hit unused bytes; or, if there is a log, the file is read as
-// of an earlier moment, with everything up to there and nothing after it.
+// The result is never a wrong world. Damage is reported; or it hit unused bytes; or, if there is a log, the file is
+// read as of an earlier moment, with everything up to there and nothing after it.
 #include "server/replay/archive.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"

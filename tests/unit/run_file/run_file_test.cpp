@@ -286,8 +286,8 @@ TEST_F(RunFileTest, OtherFormatsAreRefused) {
     EXPECT_EQ(older.code, RefusalCode::FailedPrecondition);
 }
 
-/// Recorded by evod 0.2.0 before its tables were declared in rows.h, in format 4: a fork within generation 3 that ran to
-/// generation 7. Only the table of the journal and its rows were written again for format 5.
+/// Recorded by evod 0.2.0 before its tables were declared in rows.h, in format 4: a fork within generation 3 that ran
+/// to generation 7. Only the table of the journal and its rows were written again for format 5.
 TEST_F(RunFileTest, AStoredFileOfFormat5IsReadAndContinued) {
     const std::string path = folder.path() + "/stored.evod";
     std::filesystem::copy_file(std::filesystem::path{EVOD_SOURCE_FOLDER} / "tests/unit/run_file/format_5.evod", path);

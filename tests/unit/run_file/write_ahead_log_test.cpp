@@ -1,5 +1,5 @@
-// Write-ahead logs of a killed program: with flipped bits, truncated, and with frames of earlier cycles or of rolled-back
-// transactions behind the end.
+// Write-ahead logs of a killed program: with flipped bits, truncated, and with frames of earlier cycles or of
+// rolled-back transactions behind the end.
 #include "server/run_file/write_ahead_log.h"
 
 #include "tests/unit/recording/recorded_run.h"

@@ -1,5 +1,5 @@
-// Loops with a disk: the loops of a server whose runs are stored in a folder, which can be taken away, so that creating a
-// file fails.
+// Loops with a disk: the loops of a server whose runs are stored in a folder, which can be taken away, so that creating
+// a file fails.
 #pragma once
 
 #include "server/base/inline_executor.h"

@@ -1,5 +1,5 @@
-// Worlds whose organisms are steered by networks: the state does not depend on threads or instructions, and organisms do
-// what is predicted.
+// Worlds whose organisms are steered by networks: the state does not depend on threads or instructions, and organisms
+// do what is predicted.
 #include "server/base/elementary.h"
 #include "server/base/inline_executor.h"
 #include "server/base/instructions.h"

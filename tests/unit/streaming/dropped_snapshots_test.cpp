@@ -1,5 +1,5 @@
-// Dropped snapshots: viewers that miss snapshots in every combination of ways. What each of them decodes equals what the
-// server had, whole number for whole number, whatever was dropped.
+// Dropped snapshots: viewers that miss snapshots in every combination of ways. What each of them decodes equals what
+// the server had, whole number for whole number, whatever was dropped.
 //
 // The environment variable FRAMES sets how many snapshots are compared; docs/LONG_TESTS.md.
 #include "tests/support/everyday.h"

@@ -6,12 +6,6 @@ import { bundle } from "./bundle.mjs";
 
 const page = await bundle("texts/numbers", "texts/texts", "world/event_text");
 
-function parameters(choices, numbers = {}) {
-  const all = { population_size: 50, food_health: 25, poison_harm: 40, health_loss_per_s: 6, fitness_per_second: 1, fitness_per_health: 1, ...numbers };
-  return { parameters: [...Object.entries(all).map(([name, real]) => ({ name, value: { real } })),
-                        ...Object.entries(choices).map(([name, choice]) => ({ name, value: { choice } }))] };
-}
-
 test("numbers have separators and six digits", () => {
   for (const [number, text] of [[0, "0"], [1234.5, "1,234.5"], [0.0123, "0.0123"], [-7, "−7"], [1e6, "1,000,000"], [-1e-9, "−1e-09"], [NaN, "–"]]) {
     assert.equal(page.shown_number(number), text);
@@ -73,17 +67,6 @@ test("a world may wait for the disk or for fitness", () => {
   assert.equal(page.state_word("RUN_STATE_RUNNING", storage), "waits for the disk");
   assert.equal(page.state_word("RUN_STATE_RUNNING", null, true), "waits for fitness");
   assert.equal(page.state_word("RUN_STATE_PAUSED", storage, true), "paused");
-});
-
-test("the description says what the organisms try to do", () => {
-  const life = { fitness: "life", selection: "roulette" };
-  assert.equal(page.experiment_text(parameters(life)),
-               "50 organisms seek food (+25 health) and avoid poison (−40). Each loses 6 health per second and dies at 0. Fitness is the time lived plus " +
-               "the health at the end. On average, fitter organisms have more offspring (roulette selection).");
-  assert.match(page.experiment_text(parameters({ ...life, controller: "network" })),
-               /^50 organisms, each steered by an evolving neural network, eat food \(\+25 health\) and poison \(−40\); a line shows where each heads\. Each loses 6 health/);
-  const mild = page.experiment_text(parameters(life, { poison_count: 0, health_loss_per_s: 0, fitness_per_food: -2.5 }));
-  assert.ok(!mild.includes("poison (") && mild.includes("They lose no health over time.") && mild.includes("minus 2.5 × the food eaten"), mild);
 });
 
 test("an event has the sentence of the server", () => {

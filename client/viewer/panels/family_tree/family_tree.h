@@ -63,8 +63,8 @@ class FamilyTree {
     const Row& row(std::uint64_t generation) const { return rows_[generation - first_]; }
     float width() const { return width_; }
 
-    /// Returns the number of organisms in the tree that have no parents although they are not of the earliest generation:
-    /// a user placed them.
+    /// Returns the number of organisms in the tree that have no parents although they are not of the earliest
+    /// generation: a user placed them.
     std::size_t placed_count() const;
 
     /// Returns the place of an organism in its row; `none` if the tree does not contain it.

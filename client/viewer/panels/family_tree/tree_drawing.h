@@ -1,7 +1,7 @@
 // Tree drawing: draws a family tree, with generations from top to bottom, and finds the organism at the mouse.
 //
-// It draws only what is visible, at most `lines_max` lines. If a pedigree has more visible lines, it first leaves out the
-// lines to second parents, then draws lines of first parents that span several generations.
+// It draws only what is visible, at most `lines_max` lines. If a pedigree has more visible lines, it first leaves out
+// the lines to second parents, then draws lines of first parents that span several generations.
 //
 // Owner        FamilyTreePanel; a TreeDrawing lives for one frame.
 // Threads      none; used on the drawing thread.

@@ -56,7 +56,8 @@ class FigureBuilder {
         }
     }
 
-    /// Adds a band of one standard deviation on either side of the mean, as far as it is within the range of the values.
+    /// Adds a band of one standard deviation on either side of the mean, as far as it is within the range of the
+    /// values.
     void band(const std::string& of, const std::string& least, const std::string& greatest, Colour colour) {
         const auto mean = column(subject_, of + "_mean"), deviation = column(subject_, of + "_deviation");
         const auto min = column(subject_, least), max = column(subject_, greatest);

@@ -43,8 +43,9 @@ struct Subject {
 /// The maximum number of genes in one plot.
 constexpr std::size_t genes_in_plot_max = 12;
 
-/// Returns those of the genes that have changed most in the history of `subject`, the most changed first: in their mean, or,
-/// for Quantity::Selection, by selection. If there are at most `count_max`, returns all of them in their order.
+/// Returns those of the genes that have changed most in the history of `subject`, the most changed first: in their
+/// mean, or, for Quantity::Selection, by selection. If there are at most `count_max`, returns all of them in their
+/// order.
 std::vector<std::string> most_changed(Quantity quantity, const Subject& subject, std::vector<std::string> genes,
                                       std::size_t count_max = genes_in_plot_max);
 
@@ -57,8 +58,8 @@ std::vector<std::string> most_changed(Quantity quantity, const Subject& subject,
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene,
                  std::size_t window);
 
-/// Builds the curves of the best and the mean fitness, as the sidebar shows them: with their running means, and with the
-/// newest values in the legend. Without series while no generation has ended.
+/// Builds the curves of the best and the mean fitness, as the sidebar shows them: with their running means, and with
+/// the newest values in the legend. Without series while no generation has ended.
 Figure fitness_curves(const Subject& subject);
 
 /// Builds a histogram of a gene's values, one value per organism.

@@ -249,8 +249,8 @@ export class ClientCore {
    *  session. Returns its request_id, which names it in the "response" or "failed" event.
    *
    *  first: send it before the requests that wait. Throws InvalidMessage if the request does not fit its type or is too
-   *  long, or if `failed` is set. Throws SessionEnded if it contains an id of a session and there is none, or if it names
-   *  a replay of an earlier session. */
+   *  long, or if `failed` is set. Throws SessionEnded if it contains an id of a session and there is none, or if it
+   *  names a replay of an earlier session. */
   request(request: Request, first = false): number {
     if (this.failed !== null) {
       throw new InvalidMessage(this.failed.message);

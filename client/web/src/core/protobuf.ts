@@ -1,8 +1,8 @@
 // Protobuf: reads and writes messages by a FileDescriptorSet. There is no generated code.
 //
 // A message is a plain object; its type is in protocol.ts. Absent fields are missing. Repeated fields are arrays. Enums
-// are names; a number without a name stays a number. 64-bit integers are numbers; beyond 2^53 they are rounded, except in
-// the wide_fields of protocol.ts, where they are bigints. `bytes` are views of the bytes that were read.
+// are names; a number without a name stays a number. 64-bit integers are numbers; beyond 2^53 they are rounded, except
+// in the wide_fields of protocol.ts, where they are bigints. `bytes` are views of the bytes that were read.
 //
 // The reader accepts what Google's C++ parser accepts: packed and unpacked fields, unknown fields and fields of another
 // wire type (skipped), parts of one message in several pieces (merged). It throws DamagedData for everything else. Its

@@ -220,6 +220,8 @@ export interface ParameterSet {
   schedule?: ScheduledValue[];
   /** planned changes that are not due yet, ordered by id */
   planned?: PlannedChange[];
+  /** English sentences about what the organisms try to do, by the values in effect */
+  summary?: string;
 }
 
 /** The oneof `kind` of Speed: exactly one of these. */

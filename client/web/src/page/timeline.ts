@@ -8,6 +8,7 @@ import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import type {Moment} from "../world/time_scale";
 import type {ViewedWorld} from "../world/world";
+import {GenerationField} from "./generation_field";
 import {Seeker} from "./seeker";
 import {TimeSlider} from "./time_slider";
 
@@ -22,6 +23,7 @@ export class Timeline {
 
   readonly #world: ViewedWorld;
   readonly #slider: TimeSlider;
+  readonly #field: GenerationField;
   readonly #problem = h("p", {class: "hint grow"});
   readonly #place = h("span", {class: "time-place hint"});
   readonly #first: HTMLButtonElement;
@@ -37,6 +39,7 @@ export class Timeline {
     this.#world = world;
     const seeker = new Seeker(world, context.attempt, () => this.#slider.seek_ended());
     this.#slider = new TimeSlider(world, seeker);
+    this.#field = new GenerationField(world, seeker);
     const button = (of: {label: string; name?: string}, act: () => unknown, classes = ""): HTMLButtonElement => {
       const made = guarded_button(of.label, context.notify, () => void act(), `button ${classes}`);
       set_attribute(made, "aria-label", of.name ?? null);
@@ -54,10 +57,11 @@ export class Timeline {
         {type: "button", class: "button time-copy", title: texts.copy.help, onclick: () => context.copy_link(world)},
         texts.copy.label);
     this.#buttons =
-      h("div", {class: "time-buttons"}, this.#first, this.#previous, this.#play, this.#next, this.#last, this.#place);
-    this.element =
-      h("div", {class: "timeline", role: "group", "aria-label": timeline_texts.name}, this.#buttons,
-        this.#slider.element, this.#problem, h("div", {class: "time-buttons time-right"}, this.#live, copy));
+      h("div", {class: "time-buttons"}, this.#first, this.#previous, this.#play, this.#next, this.#last,
+        this.#field.element, this.#place);
+    this.element = h(
+      "div", {class: "timeline", role: "group", "aria-label": timeline_texts.name}, this.#buttons, this.#slider.element,
+      this.#problem, h("div", {class: "time-buttons time-right"}, this.#live, copy), this.#field.wrong);
     this.#end = world.changes.listen(() => this.#refresh());
     this.#refresh();
   }
@@ -82,6 +86,7 @@ export class Timeline {
         timeline_texts.tick(snapshot.generation_tick);
       set_text(this.#place, world.past.target ? timeline_texts.going_to(moment_text(world.past.target)) : tick);
     }
+    this.#field.refresh();
     this.#slider.refresh();
   }
 

@@ -21,7 +21,7 @@ import {name_characters_max, name_of_file} from "../world/names";
 import type {Panel, PanelContext} from "../world/panel_context";
 
 import {FreezerEntry} from "./freezer_entry";
-import {update_rows} from "./rows";
+import {table_head, update_rows} from "./rows";
 
 export class FreezerPanel implements Panel {
   readonly name = "freezer";
@@ -61,9 +61,7 @@ export class FreezerPanel implements Panel {
     this.#entry = new FreezerEntry(context, this.#freezer, (name) => this.#choose(name));
     const [open, field] = open_button(texts.open_files, ".csv,text/csv", true, (files) => void this.#open(files));
     open.title = texts.open_files_help;
-    this.#table =
-      h("table", {class: "table rows-table"},
-        h("thead", {}, h("tr", {}, ...texts.list_headings.map((text) => h("th", {scope: "col"}, text)))), this.#rows);
+    this.#table = h("table", {class: "table rows-table"}, table_head(texts.list_headings, Infinity), this.#rows);
     this.element =
       h("div", {class: "panel panel-freezer"}, h("p", {class: "hint"}, texts.about),
         h("div", {class: "row", role: "group", "aria-label": texts.keep}, h("span", {}, texts.keep),

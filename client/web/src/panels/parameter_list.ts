@@ -11,6 +11,7 @@ interface Group {
   element: HTMLDetailsElement;
   rows: ParameterRow[];
   is_open: boolean; // as the user left it
+  is_extra: boolean; // its parameters also belong to other groups
 }
 
 export class ParameterList {
@@ -34,9 +35,9 @@ export class ParameterList {
   /** Makes a row for each parameter of the registry. */
   build(): void {
     const {registry} = this.#context.edits;
-    this.#groups = [most_used(registry), ...grouped(registry)]
-                     .filter((group) => group.members.length > 0)
-                     .map((group) => this.#group(group));
+    const groups =
+      [this.#group(most_used(registry), true), ...grouped(registry).map((group) => this.#group(group, false))];
+    this.#groups = groups.filter(({rows}) => rows.length > 0);
     this.element.replaceChildren(...this.#groups.map((group) => group.element));
     this.#filter();
   }
@@ -64,7 +65,7 @@ export class ParameterList {
   /** Opens the groups with rejected values, and scrolls to the first one. */
   open_violations(): void {
     const {edits} = this.#context;
-    const rejected = this.#groups.slice(1)
+    const rejected = this.#groups.filter(({is_extra}) => !is_extra)
                        .flatMap((group) => group.rows.map((row) => ({group, row})))
                        .filter(({row}) => edits.violation(row.parameter) !== null);
     for (const {group, row} of rejected) {
@@ -78,12 +79,12 @@ export class ParameterList {
     return this.#groups.flatMap((group) => group.rows);
   }
 
-  #group(group: ParameterGroup): Group {
+  #group(group: ParameterGroup, is_extra: boolean): Group {
     const {registry} = this.#context.edits, id = group.title.toLowerCase().replace(/[^a-z]+/g, "-");
     const rows = group.members.map((i) => new ParameterRow(this.#context, i, `${id}-${registry[i]!.name}`));
     const summary = h("summary", {}, group.title);
     const element = h("details", {class: "parameters-group", open: true}, summary, ...rows.map((row) => row.element));
-    const made: Group = {group, element, rows, is_open: true};
+    const made: Group = {group, element, rows, is_open: true, is_extra};
     summary.addEventListener("click", () => {
       made.is_open = this.search.value === "" ? !element.open : made.is_open;
     });
@@ -93,8 +94,7 @@ export class ParameterList {
   #filter(): void {
     const text = this.search.value.trim();
     let any = false;
-    this.#groups.forEach(({group, element, rows, is_open}, number) => {
-      const is_extra = number === 0; // its parameters also belong to other groups
+    for (const {group, element, rows, is_open, is_extra} of this.#groups) {
       let hits = 0;
       for (const row of rows) {
         const about = this.#context.edits.registry[row.parameter]!;
@@ -105,7 +105,7 @@ export class ParameterList {
       element.hidden = hits === 0;
       element.open = text !== "" || is_open;
       any = any || hits > 0;
-    });
+    }
     this.nothing_found.hidden = any || this.#groups.length === 0;
   }
 }

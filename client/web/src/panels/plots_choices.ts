@@ -1,4 +1,5 @@
-// QuantityTabs and ScopeChoice: which quantity the plots show; for which island, and smoothed over how many generations.
+// QuantityTabs and ScopeChoice: which quantity the plots show; for which island, and smoothed over how many
+// generations.
 import {quantities} from "../plots/figures";
 import type {Quantity} from "../plots/figures";
 import type {Island} from "../plots/history_table";

@@ -8,6 +8,13 @@ export interface TableRow {
   cells: string[];
 }
 
+/** The heading. Columns from `numbers_from` on are numbers. */
+export function table_head(texts: readonly string[], numbers_from: number): HTMLElement {
+  return h(
+    "thead", {},
+    h("tr", {}, ...texts.map((text, i) => h("th", {scope: "col", class: i < numbers_from ? null : "number"}, text))));
+}
+
 /** Updates the rows. Cells from column `numbers_from` on are numbers. */
 export function update_rows(body: HTMLElement, wanted: readonly TableRow[], numbers_from: number): void {
   while (body.children.length > wanted.length) {

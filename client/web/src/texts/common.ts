@@ -5,7 +5,7 @@ export const common_texts = {
   cancel: "Cancel",
   no_world: "No world is open.",
   no_world_yet: "No world is open yet.",
-  replay_cannot_change: "This world is a replay and cannot be changed.",
+  replay_cannot_change: "The shown world is a replay and cannot be changed.",
   end_of_replay: "end of the replay",
   wrong_seed: (seed: string, most: bigint) =>
     `seed: got "${seed}", allowed whole numbers from 0 to ${with_separators(most)}`,

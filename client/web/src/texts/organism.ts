@@ -72,7 +72,7 @@ export const organism_texts = {
   gene_range: (min: number, max: number, mean: number) =>
     `Range in this generation: ${gene_number(min)} to ${gene_number(max)}, mean ${gene_number(mean)}`,
   gene_of_range: (value: number, range: string) => `${gene_number(value)}. ${range}`,
-  free_genes: (count: number) => `${with_separators(count)} free genes, which the simulation does not read`,
+  free_genes: (count: number) => `${with_separators(count)} free genes, without effect in the simulation`,
   free_gene: (name: string, value: number) => `${gene_label(name)} ${gene_number(value)}`,
 
   offspring: "Offspring",

@@ -17,7 +17,7 @@ export const run_texts = {
   ended: (state: string, outcome: string) => `${state}: ${outcome}`,
   until: (state: string, generation: number) => `${state} until generation ${with_separators(generation)}`,
   state: (world: string, state: string) => `${world}: ${state}`,
-  waits: (rated: number, islands: number) => `Waits for fitness from a client; ${with_separators(rated)} of ${
+  waits: (rated: number, islands: number) => `A client has to send the fitness; ${with_separators(rated)} of ${
     with_separators(islands)} ${islands === 1 ? "island" : "islands"} rated`,
   /** generation: null before the first snapshot */
   where: (generation: number|null, tick: number, seed: number|bigint) =>

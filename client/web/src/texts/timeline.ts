@@ -30,3 +30,9 @@ export const timeline_buttons = {
   live: {label: "Live", help: "Returns to the live world (P)."},
   copy: {label: "Copy link", help: "Copies a link that shows this moment in a browser (Ctrl+C)."},
 };
+
+export const generation_field_texts = {
+  label: "generation",
+  help: (first: number, last: number) =>
+    `Type a generation from ${with_separators(first)} to ${with_separators(last)}, and press Enter to show it.`,
+};

@@ -1,4 +1,5 @@
-// Notices: short messages at the bottom that disappear by themselves, and banners at the top that stay while something is wrong.
+// Notices: short messages at the bottom that disappear by themselves, and banners at the top that stay while something
+// is wrong.
 import {h, set_text} from "./dom";
 
 const shown_ms = 6000, notices_max = 3;

@@ -1,8 +1,8 @@
 // event_text: events as sentences, and which of them a user should notice at once.
 //
-// proto/texts/events.json contains the templates, and server/protocol/event_text.h describes them. This file fills them in as the
-// server does; proto/vectors/events.json contains examples, which the tests of both compare. The page fills in the events itself,
-// because it creates events_dropped itself, too.
+// proto/texts/events.json contains the templates, and server/protocol/event_text.h describes them. This file fills them
+// in as the server does; proto/vectors/events.json contains examples, which the tests of both compare. The page fills
+// in the events itself, because it creates events_dropped itself, too.
 import texts from "../../../../proto/texts/events.json";
 import {with_separators} from "../texts/numbers";
 import {capitalised} from "../texts/texts";

@@ -1,8 +1,10 @@
-// ParameterEdits: the parameters of a world, the edits that have not been sent, and transactions with undo and redo. Pure: no DOM.
+// ParameterEdits: the parameters of a world, the edits that have not been sent, and transactions with undo and redo.
+// Pure: no DOM.
 //
-// All parameters come from the server's registry, so a parameter that is added to the server appears here. Edits are collected and sent as
-// one SetParameters request; the server applies all of them or none. The request contains the revision on which the edits are based. If
-// another client has changed a parameter since, the server rejects the request. Undo sends another SetParameters request.
+// All parameters come from the server's registry, so a parameter that is added to the server appears here. Edits are
+// collected and sent as one SetParameters request; the server applies all of them or none. The request contains the
+// revision on which the edits are based. If another client has changed a parameter since, the server rejects the
+// request. Undo sends another SetParameters request.
 import type {Message} from "../core/messages";
 import {nice_step, rounded, with_separators} from "../texts/numbers";
 import {actor_text} from "../texts/texts";
@@ -210,7 +212,8 @@ export function stepped(about: Message, number: number, up: boolean, large: bool
   return Math.min(Math.max(Number((number + (up ? step : -step)).toPrecision(10)), min), max);
 }
 
-// ---- edits and transactions ------------------------------------------------------------------------------------------
+// ---- edits and transactions
+// ------------------------------------------------------------------------------------------
 
 export interface Violation {
   field: string;
@@ -439,7 +442,8 @@ export class ParameterEdits {
     }
   }
 
-  // ---- transactions: only one may be pending. The caller sends each returned request and calls answered() once for it ----
+  // ---- transactions: only one may be pending. The caller sends each returned request and calls answered() once for it
+  // ----
 
   get busy(): boolean {
     return this.#sent !== null;

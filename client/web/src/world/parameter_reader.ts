@@ -1,6 +1,5 @@
 // ParameterReader: the parameters of the shown world, read again after each event about them.
 import type {ParameterSet} from "../core/protocol";
-import {experiment_text} from "../texts/texts";
 
 import type {Changes} from "./changes";
 import type {SnapshotFeed} from "./feed";
@@ -19,7 +18,7 @@ export class ParameterReader {
 
   /** What the organisms of the world try to do, as sentences; empty until the parameters have arrived. */
   get experiment(): string {
-    return this.set ? experiment_text(this.set) : "";
+    return this.set?.summary ?? "";
   }
 
   /** The parameters may have changed: poll() reads them. */

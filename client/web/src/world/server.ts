@@ -1,7 +1,7 @@
 // Server: the connection to the server, as the page sees it. The worker owns the socket.
 //
-// Every request goes through respond(), whose answers and events keep `worlds` up to date. The page opens watching: until
-// the user takes part, may() allows only requests that change nothing for others.
+// Every request goes through respond(), whose answers and events keep `worlds` up to date. The page opens watching:
+// until the user takes part, may() allows only requests that change nothing for others.
 import {refusal_text} from "../texts/texts";
 
 import {Changes} from "./changes";

@@ -1,5 +1,5 @@
-// Tokens: with which token the page connects. The token of a link does not replace one that works until the user agrees:
-// otherwise the author of the link would choose under which name the user works.
+// Tokens: with which token the page connects. The token of a link does not replace one that works until the user
+// agrees: otherwise the author of the link would choose under which name the user works.
 
 /** Where the token of this tab is stored. */
 export interface TokenStore {

@@ -1,8 +1,8 @@
-// ExpectedFrame: the colours that the pixels of a screenshot in the classic skin must have, computed from a snapshot independently of the
-// viewer's renderer.
+// ExpectedFrame: the colours that the pixels of a screenshot in the classic skin must have, computed from a snapshot
+// independently of the viewer's renderer.
 //
-// Shapes are painted in the viewer's order, with hard edges. Pixels on an edge, where the viewer blends, and those where a
-// number may be drawn are open; every other pixel of the viewport must have exactly the colour painted here.
+// Shapes are painted in the viewer's order, with hard edges. Pixels on an edge, where the viewer blends, and those
+// where a number may be drawn are open; every other pixel of the viewport must have exactly the colour painted here.
 #pragma once
 
 #include "client/viewer/drawing/camera.h"

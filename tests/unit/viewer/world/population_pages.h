@@ -19,8 +19,8 @@ inline void put(std::string& bytes, float number) {
     put(bytes, std::bit_cast<std::uint32_t>(number));
 }
 
-/// Organisms with genes 100 · gene + id, parents id + 1 and id + 2, founder id % 3, all seeking a target at (id, 2 id) with
-/// a force of (1, id).
+/// Organisms with genes 100 · gene + id, parents id + 1 and id + 2, founder id % 3, all seeking a target at (id, 2 id)
+/// with a force of (1, id).
 inline evod::v1::Population page_of(std::uint32_t first, std::uint32_t count, std::uint32_t organism_count,
                                     std::uint64_t generation = 4, std::uint32_t gene_count = 2) {
     evod::v1::Population page;
