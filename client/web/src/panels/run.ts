@@ -2,7 +2,7 @@
 import {common_texts} from "../texts/common";
 import {number_in} from "../texts/numbers";
 import {run_texts as texts} from "../texts/run";
-import {outcome_words, state_word} from "../texts/texts";
+import {outcome_words, state_word} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 
