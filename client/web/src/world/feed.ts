@@ -103,7 +103,7 @@ export class SnapshotFeed {
     this.problem = "";
   }
 
-  /** Tells the listeners of the snapshot that was taken last. */
+  /** Informs the listeners of the snapshot that was taken last. */
   announce(snapshot: SnapshotInfo): void {
     for (const listener of [...this.#listeners]) {
       listener(snapshot);

@@ -76,8 +76,8 @@ export class Past {
     return {first_generation: begin.generation, last_generation, first_tick: begin.tick, last_tick: tick};
   }
 
-  /** The first and the last tick of a generation, counted from the start of the run; null if the history does not contain
-   *  them. */
+  /** The first and the last tick of a generation, counted from the start of the run; null if the history does not
+   *  contain them. */
   ticks_of(generation: number): {first: number; last: number}|null {
     const range = this.range, snapshot = this.#feed.snapshot;
     if (!range) {
