@@ -545,7 +545,8 @@ class Past(Case):
         self.shown(2, 0)
         for wrong in ("0", "9", "x"):
             browser.type_into(field, wrong)
-            browser.wait_for_text(f'Generation: got "{wrong}", allowed whole numbers from 1 to 5.', ".timeline [role=alert]")
+            browser.wait_for_text(f'Generation: got "{wrong}", allowed whole numbers from 1 to 5.',
+                                  ".timeline [role=alert]")
         field.send_keys(Keys.ESCAPE)
         self.assertEqual(field.get_attribute("value"), "2")
 
@@ -607,7 +608,8 @@ class Connection(Case):
         browser.wait_for_text("not connected", ".pane-state")
         self.assertEqual(browser.snapshot()["tick"], 130)  # the last image stays
         browser.run("""globalThis.answered = null;
-            evod.app.world().control.run_until_tick(200).then(() => answered = "yes", (error) => answered = error.message);""")
+            evod.app.world().control.run_until_tick(200)
+                .then(() => answered = "yes", (error) => answered = error.message);""")
         self.restart()
         browser.wait("answered", "the answer of the new server")
         self.assertEqual(browser.value("answered"), "yes")

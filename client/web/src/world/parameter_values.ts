@@ -22,7 +22,8 @@ export function number_of(value: ParameterValue): number {
   return value.real ?? value.count ?? 0;
 }
 
-/** Converts a number to a real or a count. A count is rounded and limited to 32 bits. The server rejects a value out of range. */
+/** Converts a number to a real or a count. A count is rounded and limited to 32 bits. The server rejects a value out
+ * of range. */
 export function value_of(about: ParameterDescription, number: number): ParameterValue {
   return about.kind === "PARAMETER_KIND_COUNT" ? {count: Math.min(Math.max(Math.round(number), 0), 0xffffffff)} :
                                                  {real: number};

@@ -11,12 +11,14 @@ export function spans_decades(about: ParameterDescription): boolean {
   return max / least > decades_min;
 }
 
-/** A logarithmic scale that also contains 0 and negative numbers: linear near 0, logarithmic beyond the size `linear`. */
+/** A logarithmic scale that also contains 0 and negative numbers: linear near 0, logarithmic beyond the size
+ * `linear`. */
 function log_scale(number: number, linear: number): number {
   return Math.sign(number) * Math.log1p(Math.abs(number) / linear);
 }
 
-/** Returns the size up to which the scale of the slider is linear; 0 for a range above 0, which is purely logarithmic. */
+/** Returns the size up to which the scale of the slider is linear; 0 for a range above 0, which is purely
+ * logarithmic. */
 function linear_size(about: ParameterDescription): number {
   const {min = 0, max = 0} = about;
   if (min > 0) {
@@ -66,7 +68,8 @@ export function number_at(about: ParameterDescription, share: number): number {
   return clamp(is_count ? Math.round(Number(number.toPrecision(2))) : Number(number.toPrecision(2)));
 }
 
-/** Returns the number one step up or down, as the arrow keys of a number field set it. The steps of a real are 1, 2 or 5 times a power of ten. */
+/** Returns the number one step up or down, as the arrow keys of a number field set it. The steps of a real are 1, 2
+ * or 5 times a power of ten. */
 export function stepped(about: ParameterDescription, number: number, up: boolean, large: boolean): number {
   const {min = 0, max = 0} = about;
   const is_count = about.kind === "PARAMETER_KIND_COUNT";
