@@ -29,7 +29,8 @@ export function value_of(about: ParameterDescription, number: number): Parameter
                                                  {real: number};
 }
 
-/** Reads a number that a user has typed; null if it is none. In a real, a comma may stand for the point; in a count, commas may separate
+/** Reads a number that a user has typed; null if it is none. In a real, a comma may stand for the point; in a count,
+ * commas may separate
  *  thousands, as value_text() prints them. */
 export function typed_number(about: ParameterDescription, text: string): number|null {
   const clean = text.trim().replace("−", "-");

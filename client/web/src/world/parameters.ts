@@ -31,7 +31,8 @@ function plain(text: string): string {
   return text.toLowerCase().replace(/_/g, " ");
 }
 
-/** Returns whether the parameter or the title of its group contains every word of `search`: in the name, the unit, the help, the choices or
+/** Returns whether the parameter or the title of its group contains every word of `search`: in the name, the unit, the
+ * help, the choices or
  *  their help. Case is ignored; _ counts as a space. */
 export function matches(about: ParameterDescription, group: string, search: string): boolean {
   const all = plain([
