@@ -30,8 +30,7 @@ export function value_of(about: ParameterDescription, number: number): Parameter
 }
 
 /** Reads a number that a user has typed; null if it is none. In a real, a comma may stand for the point; in a count,
- * commas may separate
- *  thousands, as value_text() prints them. */
+ *  commas may separate thousands, as value_text() prints them. */
 export function typed_number(about: ParameterDescription, text: string): number|null {
   const clean = text.trim().replace("−", "-");
   if (about.kind === "PARAMETER_KIND_COUNT") {

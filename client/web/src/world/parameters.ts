@@ -32,8 +32,7 @@ function plain(text: string): string {
 }
 
 /** Returns whether the parameter or the title of its group contains every word of `search`: in the name, the unit, the
- * help, the choices or
- *  their help. Case is ignored; _ counts as a space. */
+ *  help, the choices or their help. Case is ignored; _ counts as a space. */
 export function matches(about: ParameterDescription, group: string, search: string): boolean {
   const all = plain([
     about.name ?? "", about.unit ?? "", about.help ?? "", group, ...(about.choices ?? []), ...(about.choice_help ?? [])
