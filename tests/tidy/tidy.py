@@ -20,7 +20,6 @@ COLUMNS_MAX = 120
 LARGER_FILES = {
     "tests/system/viewer/panels_test.cpp": "to be cut by its panels",
     "tests/system/web/page_test.py": "to be cut by its panels",
-    "tests/unit/runtime/simulation_loop_test.cpp": "to be cut by its subjects",
 }
 WIDER_FILES = {
     "server/evolution/parameters.h": "a parameter is one line",
@@ -326,7 +325,8 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/runtime", "demand"): "unit/network/streams_test",
     ("server/runtime", "mpi_exchange"): "system/mpi_test: it needs mpirun",
     ("server/runtime", "command_handler pace replies run_finder snapshot"):
-        "unit/runtime/simulation_loop_test, world_builds_test and replay_loop_test: parts of the loop",
+        "unit/runtime/simulation_loop_test, loop_queries_test, loop_snapshots_test, world_builds_test and "
+        "replay_loop_test: parts of the loop",
     ("server/runtime", "seeks shown_replays"): "unit/runtime/replay_loop_test and system/past_test",
     ("server/jobs", "this_thread"): "unit/jobs/job_queue_test",
     ("server/simulation", "commands items_kernels organism_kernels statistics"):
