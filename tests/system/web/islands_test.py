@@ -7,7 +7,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 from browser import Keys  # noqa: E402
-from page_test import Case, c, w  # noqa: E402
+from page_case import Case, c, w  # noqa: E402
 
 ISLANDS = 6
 TILES = "[...document.querySelectorAll('.island-tile')]"

@@ -13,7 +13,7 @@ from selenium.webdriver.support.ui import Select
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
-from page_test import Case, c, w  # noqa: E402
+from page_case import Case, c, w  # noqa: E402
 from browser import Keys  # noqa: E402
 
 ACTIONS_MAX = 3
