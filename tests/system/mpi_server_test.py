@@ -17,6 +17,7 @@ import mpi_jobs as jobs
 import past_test as past
 import waiting
 from past_test import EVOD, EVOCTL, c, plain, w
+from delta_decoder import Decoder
 from plain_client import EXHAUSTED, INVALID, NOT_FOUND, OK, PRECONDITION, assignments
 from recovery_test import journal
 
@@ -365,7 +366,7 @@ class Snapshots(Beside):
         deltas = client.call(subscribe_snapshots=c.SubscribeSnapshots(
             world="w", rate_hz=60, island=5, codec=plain.stream_pb2.CODEC_DELTA)).subscription.subscription_id
         client.call(run=c.Run(world="w"))
-        decoder, tick, seen = plain.Decoder(plain.zstd_content), -1, {}
+        decoder, tick, seen = Decoder(plain.zstd_content), -1, {}
         for _ in range(60):
             snapshot = client.next_snapshot()
             self.assertEqual(snapshot.island, 5)
