@@ -34,10 +34,12 @@ def evoctl(*arguments, check=True):
 def save(page, name, part=None):
     """Saves the whole page, or the part of it that a CSS selector names."""
     page.run("document.activeElement.blur()")
-    clip = part and page.value("""(({ x, y, width, height }) => ({ x: x - 8, y: y - 8, width: width + 16, height: height + 16, scale: 1 }))(
+    clip = part and page.value("""(({ x, y, width, height }) =>
+            ({ x: x - 8, y: y - 8, width: width + 16, height: height + 16, scale: 1 }))(
         document.querySelector(arguments[0]).getBoundingClientRect())""", part)
-    shot = base64.b64decode(page.cdp("Page.captureScreenshot", format="png", **({"clip": clip} if clip else {}))["data"])
-    Image.open(io.BytesIO(shot)).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
+    shot = page.cdp("Page.captureScreenshot", format="png", **({"clip": clip} if clip else {}))["data"]
+    image = Image.open(io.BytesIO(base64.b64decode(shot))).convert("RGB")
+    image.quantize(256, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
     size = (HERE / name).stat().st_size
     assert size <= BYTES_MAX, f"{name}: {size} bytes, allowed at most {BYTES_MAX}"
 

@@ -1,5 +1,5 @@
-// Experiment summary: the sentences that explain to a newcomer what the organisms of a world try to do. The clients print
-// them.
+// Experiment summary: the sentences that explain to a newcomer what the organisms of a world try to do. The clients
+// print them.
 //
 // Threads      any.
 #pragma once

@@ -59,8 +59,8 @@ class RunParameters {
     /// Returns `tick`, or the tick of an earlier planned change.
     std::uint64_t next_stop(std::uint64_t tick) const;
 
-    /// Applies the values of the schedule and the changes planned for the generation that is about to be bred, and makes
-    /// the requested values active that take effect at a generation. Adds what happened to `events`.
+    /// Applies the values of the schedule and the changes planned for the generation that is about to be bred, and
+    /// makes the requested values active that take effect at a generation. Adds what happened to `events`.
     void begin_breeding(std::uint64_t generation, std::vector<EventKind>& events);
     /// Applies the changes planned for the tick that has just ended.
     ///

@@ -177,7 +177,8 @@ class Commands(WithServer):
                 (["speed", "0"], "SPEED: got 0, allowed 0.001 to 10000"),
                 (["speed", "fast"], "SPEED: got fast, allowed max, or 0.001 to 10000, such as 2 for twice real time"),
                 (["create", "no/slash"], 'NAME: got "no/slash", allowed 1 to 64 of a-z A-Z 0-9 _ -'),
-                (["set", "--at-generation", "0", "survivors=1"], "invalid planned change\n  --at-generation: got 0, allowed at least 2"),
+                (["set", "--at-generation", "0", "survivors=1"],
+                 "invalid planned change\n  --at-generation: got 0, allowed at least 2"),
                 (["set", "mutation_chanse=1"], "mutation_chanse: unknown parameter; did you mean mutation_chance?"),
                 (["status", "--iland"], "--iland: unknown option\nSee evoctl status --help")):
             self.assertEqual(self.evoctl(*words, status=2), f"evoctl: {error}\n")

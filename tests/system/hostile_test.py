@@ -92,7 +92,7 @@ class Hostile(Attacked):
 
     def test_two_hundred_clients_send_single_bytes(self):
         became = self.attacked("slow", 200, at_least_s=1.3 * FRAME_S, enough=lambda counts: counts["closed"] >= 200)
-        self.assertGreater(became["closed_after_s"][0], 0.9 * HELLO_S)
+        self.assertGreater(became["closed_after_s"][0], 0.5 * HELLO_S)
 
     def test_a_hundred_subscribers_never_read(self):
         became = self.attacked("deaf", 100, at_least_s=2.0 * STALLED_S, enough=lambda counts: counts["closed"] == 100)

@@ -19,8 +19,6 @@ COLUMNS_MAX = 120
 # Files that exceed a limit → why.
 LARGER_FILES = {
     "tests/system/viewer/panels_test.cpp": "to be cut by its panels",
-    "tests/system/web/page_test.py": "to be cut by its panels",
-    "tests/unit/runtime/simulation_loop_test.cpp": "to be cut by its subjects",
 }
 WIDER_FILES = {
     "server/evolution/parameters.h": "a parameter is one line",
@@ -58,12 +56,13 @@ BANNED = {
 BANNED_NAMES = {
     "Retries": "ReplyCache", "Pulse": "Heartbeat", "Buffers": "SendMemory", "Breedings": "BackgroundQueries",
     "Rearranging": "OrderMutation", "Sight": "Perception or ViewOptions",
-                "Scene": "QuantisedSnapshot or IslandRenderer",
+    "Scene": "QuantisedSnapshot or IslandRenderer",
     "Chain": "DeltaStream", "Watch": "WorldFeed or StreamDemand", "Thinning": "Retention", "Inquiry": "Poll",
     "Readout": "StatusText",
 }
 CODE = (".cpp", ".h", ".c", ".proto", ".py")
-TEXT = (*CODE, ".ts", ".glsl", ".mjs", ".css", ".html", ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
+TEXT = (*CODE, ".ts", ".glsl", ".mjs", ".css", ".html", ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml",
+        ".toml", "")
 # The changelog names what was renamed, and this test names what is banned. The rest is not ours to write, or not text.
 WITHOUT_WORDS = re.compile(r"CHANGELOG\.md|LICENSE|tests/tidy/|tests/fuzz/corpus/|proto/vectors/|\.gitignore")
 
@@ -325,7 +324,8 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/runtime", "demand"): "unit/network/streams_test",
     ("server/runtime", "mpi_exchange"): "system/mpi_test: it needs mpirun",
     ("server/runtime", "command_handler pace replies run_finder snapshot"):
-        "unit/runtime/simulation_loop_test, world_builds_test and replay_loop_test: parts of the loop",
+        "unit/runtime/simulation_loop_test, loop_queries_test, loop_snapshots_test, world_builds_test and "
+        "replay_loop_test: parts of the loop",
     ("server/runtime", "seeks shown_replays"): "unit/runtime/replay_loop_test and system/past_test",
     ("server/jobs", "this_thread"): "unit/jobs/job_queue_test",
     ("server/simulation", "commands items_kernels organism_kernels statistics"):
@@ -372,19 +372,22 @@ def unbuilt_tests(names, text_of):
 
 
 SENTENCE_WORDS_MIN = 4
-# Folders to which the rule does not apply. core: the protocol is implemented once per language, and the tests compare the verdicts of
-# all decoders; history_csv is such a reader, too. viewer: panels that the page has, too, until evoview is the minimal viewer; then
-# remove this entry.
+# Folders to which the rule does not apply. core: the protocol is implemented once per language, and the tests compare
+# the verdicts of all decoders; history_csv is such a reader, too. viewer: panels that the page has, too, until evoview
+# is the minimal viewer; then remove this entry.
 VOICES_APART = ("client/web/src/core/", "client/core/history_csv", "client/viewer/")
 # Labels of states, axes, fields and empty plots: names of things rather than sentences.
 LABELS = {"waits for the disk", "gene units per generation", "generation of the parents", "no generation has ended yet"}
-SENTENCE_TEXT = re.compile(r"""//[^\n]*|/\*.*?\*/|\#[^\n]*|(?P<quote>\"{3}|["'`])(?P<text>(?:\\.|(?!(?P=quote)).)*?)(?P=quote)""", re.S | re.X)
+SENTENCE_TEXT = re.compile(
+    r"""//[^\n]*|/\*.*?\*/|\#[^\n]*
+                       |(?P<quote>\"{3}|["'`])(?P<text>(?:\\.|(?!(?P=quote)).)*?)(?P=quote)""", re.S | re.X)
 
 
 def sentences_of(path, text):
     """The sentences in the text literals of a source, as words in lower case → line. Literals in a row are one."""
     if path.suffix == ".py":
-        text = re.sub(r'(?m)^\s*"{3}.*?"{3}', lambda found: "\n" * found.group().count("\n"), text, flags=re.S)  # docstrings
+        docstring = r'(?m)^\s*"{3}.*?"{3}'
+        text = re.sub(docstring, lambda found: "\n" * found.group().count("\n"), text, flags=re.S)
         text = re.sub(r"(?m)^\s*#.*$", "", text)
     sentences, literal, start, end = {}, "", 0, -1
     for found in [*SENTENCE_TEXT.finditer(text), None]:
@@ -404,8 +407,8 @@ def sentences_of(path, text):
 
 
 def second_voices(names, text_of):
-    """Sentences that the browser page has in common with a program in C++ or Python: one of both has to send it, or both
-    read it from a file. Arguments as in untested_sources()."""
+    """Sentences that the browser page has in common with a program in C++ or Python: one of both has to send it, or
+    both read it from a file. Arguments as in untested_sources()."""
     others = {}
     for name in names:
         if re.match(r"(server|client|proto)/.*\.(cpp|h|py)$", name) and not name.startswith(VOICES_APART):
@@ -415,7 +418,8 @@ def second_voices(names, text_of):
         if re.match(r"client/web/src/.*\.ts$", name) and not name.startswith(VOICES_APART):
             for sentence, line in sentences_of(pathlib.Path(name), text_of(name)).items():
                 if sentence in others.keys() - LABELS:
-                    yield pathlib.Path(name), line, f"'{sentence}' stands in {others[sentence]}, too: let one of both say it"
+                    yield (pathlib.Path(name), line,
+                           f"'{sentence}' stands in {others[sentence]}, too: let one of both say it")
 
 
 def findings(root):

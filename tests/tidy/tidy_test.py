@@ -46,10 +46,12 @@ class Rules(unittest.TestCase):
             return [line for _, line, _ in tidy.second_voices(files, files.get)]
         cpp = 'f("the world " + name + " has been deleted "\n  "by the administrator: create it");'
         self.assertEqual(voices("server/a.cpp", cpp, "\nlet a = `${x} has been deleted by the administrator.`;"), [2])
-        self.assertEqual(voices("client/python/evod/a.py", 'f"{x} has been deleted by Anna"', 'a("has been deleted by Anna");'), [1])
-        self.assertEqual(voices("server/a.cpp", "// has been deleted by the administrator\n", 'a("has been deleted by the administrator");'), [])
+        python, of_page = 'f"{x} has been deleted by Anna"', 'a("has been deleted by Anna");'
+        self.assertEqual(voices("client/python/evod/a.py", python, of_page), [1])
+        comment, of_page = "// has been deleted by the administrator\n", 'a("has been deleted by the administrator");'
+        self.assertEqual(voices("server/a.cpp", comment, of_page), [])
+        self.assertEqual(voices("tests/a.cpp", cpp, of_page), [], "a test")
         self.assertEqual(voices("server/a.cpp", 'f("has been deleted");', 'a("has been deleted");'), [], "three words")
-        self.assertEqual(voices("tests/a.cpp", cpp, 'a("has been deleted by the administrator");'), [], "a test")
 
     def test_torn_comment_blocks_are_found(self):
         self.assertEqual(found(tidy.torn_comments, "a.h", "// stream. Source       Blickle 1996\n"), [1])

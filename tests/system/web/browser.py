@@ -190,7 +190,8 @@ class Browser:
 
     def set_camera(self, x_px, y_px, zoom):
         """Shows the island at this scale, which a user can only come near with the wheel."""
-        self.run("evod.app.panes.focused.pane.view.set({ x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] })", x_px, y_px, zoom)
+        self.run("evod.app.panes.focused.pane.view.set({ x_px: arguments[0], y_px: arguments[1], zoom: arguments[2] })",
+                 x_px, y_px, zoom)
 
     def canvas(self):
         """The place of the canvas: its left, top, width and height in CSS pixels."""

@@ -4,15 +4,14 @@ import signal
 import sys
 import unittest
 
-import page_test as page
+from page_case import Case, c
 from browser import Keys
-from metrics_test import c
 
 OPTIONS = "[...document.querySelectorAll(`.family select[aria-label='${arguments[0]}'] option`)]"
 READ = "Number(/Organism (\\d+) of generation/.exec(document.querySelector('.family-note').textContent)?.[1] ?? -1)"
 
 
-class Family(page.Case):
+class Family(Case):
     def choose(self, label, text):
         option = f"{OPTIONS}.find((option) => option.text === arguments[1])"
         self.browser.wait(option, text, label, text).click()

@@ -9,7 +9,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import numpy  # noqa: E402
 import waiting  # noqa: E402
-from page_test import Case, c  # noqa: E402
+from page_case import Case, c  # noqa: E402
 
 PANEL = ".panel-freezer"
 HEADING = "island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius\n"

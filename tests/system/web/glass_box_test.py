@@ -1,5 +1,7 @@
-"""The glass box of the page against evod: what it computes from a breeding is what the server did. EVOD names the program, MESSAGES
-the folder of the message classes. Needs node, esbuild and protoc."""
+"""The glass box of the page against evod: what it computes from a breeding is what the server did.
+
+EVOD names the program, MESSAGES the folder of the message classes. Needs node, esbuild and protoc.
+"""
 import pathlib
 import subprocess
 import sys

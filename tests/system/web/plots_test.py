@@ -4,10 +4,10 @@ import signal
 import sys
 import unittest
 
-import page_test as page
+from page_case import Case, c
 
 
-class Plots(page.Case):
+class Plots(Case):
     def plots(self, **parameters):
         """A server whose world has ended two generations, and the panel "Plots" of its page."""
         server = self.start(**parameters)
@@ -67,7 +67,7 @@ class Plots(page.Case):
         self.browser.wait_for_text("33 bodies", ".physics")
         for tick in (60, 90):
             control.run_to(tick)
-            motion = control.call(get_motion=page.c.GetMotion(world="default")).motion
+            motion = control.call(get_motion=c.GetMotion(world="default")).motion
             self.assertEqual((motion.tick, motion.body_count), (tick, 33))
             shown = f"{motion.kinetic_energy:.6g}"
             self.browser.wait("document.querySelector('.physics .plot-area').ariaLabel.replaceAll(',', '')"

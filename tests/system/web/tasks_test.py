@@ -1,4 +1,5 @@
-"""Ten tasks of a lesson in the page. Each takes at most three actions from the first screen: clicks, keys, and choices in a list.
+"""Ten tasks of a lesson in the page. Each takes at most three actions from the first screen: clicks, keys, and choices
+in a list.
 
 The user takes part already. docs/BROWSER.md lists the tasks with their actions.
 """
@@ -12,7 +13,7 @@ from selenium.webdriver.support.ui import Select
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
-from page_test import Case, c, w  # noqa: E402
+from page_case import Case, c, w  # noqa: E402
 from browser import Keys  # noqa: E402
 
 ACTIONS_MAX = 3
@@ -55,8 +56,9 @@ class Tasks(Case):
 
     def choose(self, css, value):
         """Chooses an entry of a drop-down list. The browser shows and closes the list."""
-        found = self.browser.wait("""[...document.querySelectorAll(arguments[0])].find((e) => e.checkVisibility() && !e.disabled &&
-            [...e.options].some((option) => option.value === arguments[1]))""", f"{value} in {css}", css, value)
+        found = self.browser.wait("""[...document.querySelectorAll(arguments[0])].find((e) =>
+            e.checkVisibility() && !e.disabled && [...e.options].some((option) => option.value === arguments[1]))""",
+                                  f"{value} in {css}", css, value)
         self.act(Select(found).select_by_value, value)
 
     def click_island(self, x_px, y_px):
@@ -107,12 +109,14 @@ class Tasks(Case):
         organism = self.child().id
         self.click_organism(organism)
         self.key("l")
-        self.browser.wait("evod.app.world().selection.follow && evod.app.world().selection.id === arguments[0]", "following", organism)
+        self.browser.wait("evod.app.world().selection.follow && evod.app.world().selection.id === arguments[0]",
+                          "following", organism)
 
     def test_show_generation_5_again(self):
         left, top, width, height = self.browser.value("""(({ left, top, width, height }) => [left, top, width, height])(
             document.querySelector(".column .plot canvas").getBoundingClientRect())""")
-        # The generations 1 to 9 have ended: generation 5 is in the middle of the curve, to the right of the axis's numbers.
+        # The generations 1 to 9 have ended: generation 5 is in the middle of the curve, to the right of the axis's
+        # numbers.
         self.act(self.mouse, left + width * 0.55, top + height / 2)
         generation = self.browser.wait("""(world => world.is_replay && world.snapshot?.generation < 10 &&
             world.snapshot.generation)(evod.app.world())""", "an earlier generation")

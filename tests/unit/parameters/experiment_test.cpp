@@ -147,11 +147,11 @@ TEST(Experiment, ReferencePopulationIsTheFirstScheduledOne) {
 }
 
 TEST(Experiment, ItsScheduleIsReadBackFromItsOwnText) {
-    for (
-        const char* text :
-        {R"({"mutation_chance": {"1": 0.2, "30": 0.05}, "respawn": {"7": false}, "crossover": {"2": "none", "3": "uniform"}})",
-         R"({"population_size": {"1": 30, "5": 60}})", R"({"population_size": {"5": 60}, "reference_population": 7})",
-         R"({"food_health": {"18446744073709551615": 0.1}})", "{}"}) {
+    for (const char* text :
+         {R"({"mutation_chance": {"1": 0.2, "30": 0.05}, "respawn": {"7": false},
+              "crossover": {"2": "none", "3": "uniform"}})",
+          R"({"population_size": {"1": 30, "5": 60}})", R"({"population_size": {"5": 60}, "reference_population": 7})",
+          R"({"food_health": {"18446744073709551615": 0.1}})", "{}"}) {
         const auto experiment = parse_experiment(text);
         ASSERT_TRUE(experiment) << to_text(experiment.error());
         for (const Written written : {Written::Differences, Written::Everything}) {

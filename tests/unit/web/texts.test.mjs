@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const page = await bundle("texts/numbers", "texts/texts", "world/event_text");
+const page = await bundle("texts/numbers", "texts/refusals", "texts/snapshot", "texts/states", "texts/users", "world/event_text");
 
 test("numbers have separators and six digits", () => {
   for (const [number, text] of [[0, "0"], [1234.5, "1,234.5"], [0.0123, "0.0123"], [-7, "−7"], [1e6, "1,000,000"], [-1e-9, "−1e-09"], [NaN, "–"]]) {

@@ -8,11 +8,6 @@ import {event_kinds} from "./protocol";
 import type {Event, EventKinds, One, Request, RequestKinds, RequestRules, Response, Welcome} from "./protocol";
 import type {Snapshot, SnapshotInfo} from "./snapshot";
 
-/** A message of the protocol whose type is not stated yet. */
-export type Message = {
-  [field: string]: any
-};
-
 export type RequestKind = keyof RequestKinds;
 export type EventKind = keyof EventKinds;
 

@@ -1,6 +1,6 @@
 // App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices
 // below.
-import {kind_of, type RequestKind} from "../core/messages";
+import {kind_of} from "../core/messages";
 import type {Event as WorldEvent} from "../core/protocol";
 import {panels} from "../panels/all";
 import {Column} from "./column";
@@ -234,7 +234,7 @@ export class App implements KeyTarget {
     const kind = kind_of(event)?.kind, world = event.world ?? "";
     const commands = kind === undefined ? undefined : noticed_events[kind];
     const is_shown = this.areas.some((area) => area.world.name === world || area.world.shown === world);
-    if (commands && is_shown && !commands.some((command) => this.server.has_sent(command as RequestKind, world))) {
+    if (commands && is_shown && !commands.some((command) => this.server.has_sent(command, world))) {
       this.notify(event_text(event)[0] + ".");
     }
   }

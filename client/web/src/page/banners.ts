@@ -1,6 +1,7 @@
 // Banners of the page: what is wrong with the connection, the server, its disk or a link, and what the user can do.
 import {app_texts} from "../texts/app";
-import {session_text, storage_text} from "../texts/texts";
+import {storage_text} from "../texts/states";
+import {session_text} from "../texts/users";
 import type {Banner} from "../widgets/notices";
 import type {Server} from "../world/server";
 import type {Tokens} from "../world/tokens";

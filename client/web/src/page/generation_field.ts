@@ -1,8 +1,7 @@
 // GenerationField: the field of the time line in which the user types the generation to show.
 //
 // Owner    Timeline.
-import {number_in} from "../texts/numbers";
-import {capitalised} from "../texts/texts";
+import {capitalised, number_in} from "../texts/numbers";
 import {generation_field_texts as texts} from "../texts/timeline";
 import {set_attribute, set_value} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";

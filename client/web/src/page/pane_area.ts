@@ -1,7 +1,8 @@
 // PaneArea: a pane with its strips: above the canvas what is shown and how the world runs, below it the time line of a
 // replay and the statistics of the island.
 import {link_texts, pane_texts, tile_texts} from "../texts/pane";
-import {place_and_speed_text, state_word, statistics_texts} from "../texts/texts";
+import {place_and_speed_text, statistics_texts} from "../texts/snapshot";
+import {state_word} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text, svg} from "../widgets/dom";
 import type {ViewedWorld} from "../world/world";

@@ -1,7 +1,7 @@
 // RunBar: the controls of the shown world that are always in reach: run and pause, one generation, replay, fork, speed.
 import {shown_number} from "../texts/numbers";
 import {run_bar_texts as texts} from "../texts/run_bar";
-import {speed_text} from "../texts/texts";
+import {speed_text} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {speed_max} from "../world/control";

@@ -1,7 +1,7 @@
 // Summary: the top of the column: which world is shown, what its organisms try to do, what the marks mean, the
 // healthiest organisms, the live fitness curve, run control, and taking part.
 import {column_texts as texts} from "../texts/column";
-import {session_text} from "../texts/texts";
+import {session_text} from "../texts/users";
 import {set_attribute, set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";

@@ -90,7 +90,7 @@ export class FreezerEntry {
     set_text(this.#wrong, typeof chosen === "string" ? `${chosen}.` : "");
     this.#genes.element.hidden = typeof chosen === "string";
     if (typeof chosen !== "string") {
-      const {gene_names, selection: {info: organism}} = world;
+      const {selection: {info: organism}, gene_names} = world;
       this.#genes.update(
         shown, chosen, {id: organism ? world.selection.id : null, gene_names, genes: organism?.genes ?? []});
     }

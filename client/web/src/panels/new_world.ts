@@ -12,7 +12,7 @@ import {type Kept, kept_count, kept_organisms} from "../freezer/freezer";
 import {common_texts} from "../texts/common";
 import {freezer_texts} from "../texts/freezer";
 import {new_world_texts as texts} from "../texts/new_world";
-import {capitalised} from "../texts/texts";
+import {capitalised} from "../texts/numbers";
 import {Dialog, set_attribute, set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {open_button} from "../widgets/files";

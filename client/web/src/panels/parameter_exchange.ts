@@ -4,7 +4,8 @@ import type {Event, ParameterSet, PlannedChange, SetParameters} from "../core/pr
 import {common_texts} from "../texts/common";
 import {parameters_texts as texts} from "../texts/parameters";
 import {undo_texts} from "../texts/undo";
-import {label_of, ParameterEdits, when_text, type When} from "../world/parameter_edits";
+import {ParameterEdits, type When, when_text} from "../world/parameter_edits";
+import {label_of} from "../world/parameters";
 import type {PanelContext} from "../world/panel_context";
 import {Refusal} from "../world/server";
 import type {UndoStep} from "../world/undo";

@@ -1,7 +1,7 @@
 // ParameterList: the parameters in groups, and the search.
 import {parameters_texts as texts} from "../texts/parameters";
 import {h} from "../widgets/dom";
-import {grouped, matches, most_used, type ParameterGroup} from "../world/parameter_edits";
+import {grouped, matches, most_used, type ParameterGroup} from "../world/parameters";
 
 import {ParameterRow} from "./parameter_row";
 import type {RowContext} from "./parameter_value";

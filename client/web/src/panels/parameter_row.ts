@@ -2,15 +2,8 @@
 import type {ParameterDescription, ParameterValue} from "../core/protocol";
 import {effect_texts, parameter_texts as texts} from "../texts/parameters";
 import {h, set_text} from "../widgets/dom";
-import {
-  allowed_text,
-  is_number,
-  label_of,
-  label_of_choice,
-  number_of,
-  unit_text,
-  value_text,
-} from "../world/parameter_edits";
+import {number_of, value_text} from "../world/parameter_values";
+import {allowed_text, is_number, label_of, label_of_choice, unit_text} from "../world/parameters";
 
 import {ParameterControl, type RowContext} from "./parameter_value";
 

@@ -3,20 +3,10 @@ import type {ParameterDescription, ParameterValue} from "../core/protocol";
 import {parameter_texts as texts} from "../texts/parameters";
 import {set_enabled, set_value} from "../widgets/controls";
 import {h} from "../widgets/dom";
-import {
-  allowed_text,
-  is_number,
-  label_of_choice,
-  number_at,
-  number_of,
-  type ParameterEdits,
-  share_of,
-  stepped,
-  typed_number,
-  unit_text,
-  value_of,
-  value_text,
-} from "../world/parameter_edits";
+import {type ParameterEdits} from "../world/parameter_edits";
+import {number_of, typed_number, value_of, value_text} from "../world/parameter_values";
+import {allowed_text, is_number, label_of_choice, unit_text} from "../world/parameters";
+import {number_at, share_of, stepped} from "../world/slider_scale";
 
 const slider_places = 1000;
 

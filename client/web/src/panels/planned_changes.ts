@@ -2,9 +2,10 @@
 import type {ParameterAssignment, PlannedChange, ScheduledValue} from "../core/protocol";
 import {common_texts} from "../texts/common";
 import {planned_texts as texts} from "../texts/parameters";
-import {actor_text} from "../texts/texts";
+import {actor_text} from "../texts/users";
 import {h, set_text} from "../widgets/dom";
-import {value_text, when_text} from "../world/parameter_edits";
+import {when_text} from "../world/parameter_edits";
+import {value_text} from "../world/parameter_values";
 
 export class PlannedChanges {
   readonly element: HTMLElement;

@@ -2,7 +2,7 @@
 import {common_texts} from "../texts/common";
 import {number_in} from "../texts/numbers";
 import {run_texts as texts} from "../texts/run";
-import {outcome_words, state_word} from "../texts/texts";
+import {outcome_words, state_word} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 
@@ -39,7 +39,8 @@ export class RunPanel implements Panel {
     const {notify} = context;
     this.#one = guarded_button(texts.one_tick, notify, () => this.#attempt(() => context.world().control.step(1)));
     this.#step = guarded_button(
-      texts.step, notify, () => this.#with_number(texts.of_ticks, this.#ticks, (ticks) => context.world().control.step(ticks)));
+      texts.step, notify,
+      () => this.#with_number(texts.of_ticks, this.#ticks, (ticks) => context.world().control.step(ticks)));
     this.#run = guarded_button(
       texts.run, notify,
       () => this.#with_number(texts.of_generations, this.#generations, (count) => context.world().control.run(count)));
@@ -61,8 +62,9 @@ export class RunPanel implements Panel {
     if (!info) {
       set_text(this.#state, common_texts.no_world_yet);
     } else {
-      let state = world.control.at_end ? common_texts.end_of_replay :
-                                 state_word(world.control.state, server.storage, info.awaited_fitness !== undefined);
+      let state = world.control.at_end ?
+        common_texts.end_of_replay :
+        state_word(world.control.state, server.storage, info.awaited_fitness !== undefined);
       if (world.control.state === "RUN_STATE_TERMINATED") {
         state = texts.ended(state, outcome_words(info.outcome));
       } else if (info.run_until_generation !== undefined && world.control.state === "RUN_STATE_RUNNING") {
@@ -75,8 +77,8 @@ export class RunPanel implements Panel {
     set_text(this.#waits, awaited ? texts.waits(rated, islands) : "");
     const generation = world.snapshot?.generation ?? null;
     set_text(this.#where, info ? texts.where(generation, world.feed.tick, info.seed ?? 0) : "");
-    const why_run =
-      !info ? common_texts.no_world : server.why_not("run", world.shown) || (world.control.is_over ? texts.has_ended : "");
+    const why_run = !info ? common_texts.no_world :
+                            server.why_not("run", world.shown) || (world.control.is_over ? texts.has_ended : "");
     set_allowed(this.#one, why_run, texts.one_tick_help);
     set_allowed(this.#step, why_run, texts.step_help);
     set_allowed(this.#run, why_run, texts.run_help);

@@ -2,7 +2,7 @@
 // fork and delete worlds.
 import {common_texts} from "../texts/common";
 import {with_separators} from "../texts/numbers";
-import {speed_text, state_word} from "../texts/texts";
+import {speed_text, state_word} from "../texts/states";
 import {worlds_texts as texts} from "../texts/worlds";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -105,7 +105,7 @@ export class WorldsPanel implements Panel {
       ...listed.map((info) => {
         const live = info.name === world.shown && world.snapshot;
         return row(info.name, [
-          state_word(live ? world.control.state : info.state ?? "", server.storage, info.awaited_fitness !== undefined),
+          state_word(live ? world.control.state : info.state, server.storage, info.awaited_fitness !== undefined),
           with_separators(live ? live.generation : info.generation ?? 0),
           with_separators(live ? live.tick : info.tick ?? 0),
           info.slowed ? texts.slower(speed_text(info.speed)) : speed_text(info.speed)

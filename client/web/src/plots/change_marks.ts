@@ -1,7 +1,7 @@
 // change_marks: changes of parameters as marks in plots over generations.
 import type {AppliedChange} from "../core/protocol";
 import {plot_texts} from "../texts/plot";
-import {actor_text} from "../texts/texts";
+import {actor_text} from "../texts/users";
 import {values_text} from "../world/change_text";
 import type {Mark} from "./plot_layout";
 

@@ -240,7 +240,8 @@ export interface Box {
   bottom: number;
 }
 
-/** Returns the upper left corner of a note of this size next to a box: on its left side, or else where there is room: on
+/** Returns the upper left corner of a note of this size next to a box: on its left side, or else where there is room:
+ *  on
  *  the right, above or below. y: the height at which the note is centred. */
 export function note_place(
   box: Box, size: {width: number; height: number}, y: number,

@@ -91,3 +91,8 @@ export function nice_step(least: number): number {
   }
   return 10 * ten;
 }
+
+/** The text with a capital letter at its beginning. */
+export function capitalised(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}

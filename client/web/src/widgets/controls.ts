@@ -1,7 +1,8 @@
 // controls: widgets that several parts of the page use.
 import {h, set_text} from "./dom";
 
-/** Enables a button, or makes it explain why it cannot act: it stays reachable by keyboard, and guard() shows the reason. */
+/** Enables a button, or makes it explain why it cannot act: it stays reachable by keyboard, and guard() shows the
+ *  reason. */
 export function set_allowed(button: HTMLElement, why_not: string, help = ""): void {
   set_attribute(button, "aria-disabled", why_not ? "true" : null);
   set_attribute(button, "title", why_not || help || null);

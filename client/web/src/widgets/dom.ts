@@ -2,7 +2,7 @@
 
 type Child = Node|string|null|undefined|false;
 type Attributes = {
-  [name: string]: string|number|boolean|null|undefined|((event: any) => void)
+  [name: string]: string|number|boolean|null|undefined|((event: never) => void)
 };
 
 /** Creates an element. Functions become listeners ("onclick"), true an empty attribute, false and null none. */
@@ -20,7 +20,7 @@ export function svg<Tag extends keyof SVGElementTagNameMap>(
 function fill<Made extends Element>(element: Made, attributes: Attributes, children: Child[]): Made {
   for (const [name, value] of Object.entries(attributes)) {
     if (typeof value === "function") {
-      element.addEventListener(name.replace(/^on/, ""), value);
+      element.addEventListener(name.replace(/^on/, ""), value as (event: Event) => void);
     } else if (value !== false && value !== null && value !== undefined) {
       element.setAttribute(name, value === true ? "" : String(value));
     }

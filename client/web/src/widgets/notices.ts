@@ -1,5 +1,7 @@
 // Notices: short messages at the bottom that disappear by themselves, and banners at the top that stay while something
 // is wrong.
+import {widget_texts} from "../texts/widgets";
+
 import {h, set_text} from "./dom";
 
 const shown_ms = 6000, notices_max = 3;
@@ -15,10 +17,14 @@ export class Notices {
       }
     }
     const notice = h("div", {class: "notice"}, h("span", {}, text));
-    notice.append(h(
-      "button",
-      {type: "button", class: "button button-quiet", "aria-label": "Close the message", onclick: () => notice.remove()},
-      "✕"));
+    notice.append(
+      h("button", {
+        type: "button",
+        class: "button button-quiet",
+        "aria-label": widget_texts.close_message,
+        onclick: () => notice.remove()
+      },
+        "✕"));
     this.element.append(notice);
     while (this.element.children.length > notices_max) {
       this.element.firstElementChild!.remove();

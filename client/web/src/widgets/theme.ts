@@ -1,14 +1,15 @@
 // theme: dark, light, or as the browser prefers.
+import {widget_texts} from "../texts/widgets";
 import {of_browser} from "../world/storage";
 
 import {set_attribute} from "./controls";
 import {h, set_text} from "./dom";
 
 type Theme = ""|"dark"|"light"; // "": as the browser prefers
-const names: {[theme in Theme]: [string, string]} = {
-  "": ["◐", "Theme: as the system"],
-  dark: ["☾", "Theme: dark"],
-  light: ["☀", "Theme: light"]
+const signs: {[theme in Theme]: string} = {
+  "": "◐",
+  dark: "☾",
+  light: "☀"
 };
 const order: Theme[] = ["", "dark", "light"];
 
@@ -24,8 +25,8 @@ export function theme_button(): HTMLButtonElement {
     theme = wanted;
     of_browser.set("theme", theme);
     set_attribute(document.documentElement, "data-theme", theme || null);
-    const [sign, label] = names[theme];
-    set_text(button, sign);
+    const label = widget_texts.theme[theme];
+    set_text(button, signs[theme]);
     button.title = label;
     set_attribute(button, "aria-label", label);
     document.dispatchEvent(new Event("evod-theme")); // canvases of plots draw again

@@ -1,16 +1,16 @@
 // change_text: changes of parameters as text.
-import type {Message} from "../core/messages";
+import type {AppliedChange, ParameterValue} from "../core/protocol";
 import {rounded} from "../texts/numbers";
 
 /** Returns a ParameterValue as text: "0.15", "25", "true", "roulette"; "-" if there is none. */
-export function change_value_text(value: Message|undefined): string {
+export function change_value_text(value: ParameterValue|undefined): string {
   const one = value?.real ?? value?.count ?? value?.flag ?? value?.choice;
   return one === undefined ? "-" : typeof one === "number" ? rounded(one) : String(one);
 }
 
 /** "food_health 20 → 30, poison_count 5 → 6": the values that an AppliedChange has changed. */
-export function values_text(change: Message): string {
-  return (change.values as Message[] | undefined ?? [])
+export function values_text(change: AppliedChange): string {
+  return (change.values ?? [])
     .map((value) => `${value.name} ${change_value_text(value.before)} → ${change_value_text(value.after)}`)
     .join(", ");
 }

@@ -4,7 +4,8 @@ export class Changes {
   #listeners = new Set<() => void>();
   #scheduled = false;
 
-  /** per_frame: listeners wait for the next animation frame; a hidden page has none, so they then wait until it is shown. */
+  /** per_frame: listeners wait for the next animation frame; a hidden page has none, so they then wait until it is
+   *  shown. */
   readonly #per_frame: boolean;
 
   constructor(per_frame: boolean) {

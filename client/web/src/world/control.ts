@@ -1,5 +1,5 @@
-// RunControl: runs, pauses and steps the shown world, and sets its speed. Until a command is answered, it states what the
-// command will bring about.
+// RunControl: runs, pauses and steps the shown world, and sets its speed. Until a command is answered, it states what
+// the command will bring about.
 import type {RequestKind} from "../core/messages";
 import type {RequestKinds, RunState, Speed} from "../core/protocol";
 import type {SnapshotInfo} from "../core/snapshot";
@@ -104,8 +104,8 @@ export class RunControl {
     }
   }
 
-  /** Runs this many ticks, then pauses. A running world is paused first: otherwise it would run on when the lease of the
-   *  step ends. */
+  /** Runs this many ticks, then pauses. A running world is paused first: otherwise it would run on when the lease of
+   *  the step ends. */
   async step(ticks: number): Promise<void> {
     if (this.state === "RUN_STATE_RUNNING") {
       await this.pause();

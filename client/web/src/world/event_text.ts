@@ -4,17 +4,18 @@
 // in as the server does; proto/vectors/events.json contains examples, which the tests of both compare. The page fills
 // in the events itself, because it creates events_dropped itself, too.
 import texts from "../../../../proto/texts/events.json";
-import {with_separators} from "../texts/numbers";
-import {capitalised} from "../texts/texts";
-import type {Message} from "../core/messages";
+import {capitalised, with_separators} from "../texts/numbers";
+import {type EventKind, kind_of, type RequestKind} from "../core/messages";
+import type {Event} from "../core/protocol";
 
 type Words = {
-  [name: string]: string
+  readonly [name: string]: string
 };
-const templates: {[name: string]: string|Words} = texts;
+const templates: {readonly [name: string]: string|Words} = texts;
+const template_of_kind: {readonly[kind in EventKind]: string} = texts; // the compiler knows if one is missing
 
-/** The commands that cause the events of which users of a world want to hear. */
-export const noticed_events: {[event: string]: string[]} = {
+/** The events of which users of a world want to hear, and the commands that cause them. */
+export const noticed_events: {readonly[kind in EventKind]?: readonly RequestKind[]} = {
   parameters_changed: ["set_parameters"],
   change_planned: ["set_parameters"],
   change_cancelled: ["cancel_change"],
@@ -26,19 +27,15 @@ export const noticed_events: {[event: string]: string[]} = {
 };
 
 /** Events about the progress of the simulation. */
-const progress = new Set(["generation_finished", "migration", "extinction", "fitness_awaited"]);
-
-/** Returns the field of the oneof Event.kind that is set; undefined for an event that this page does not know. */
-export function event_kind(event: Message): string|undefined {
-  return Object.keys(event).find((field) => typeof event[field] === "object" && typeof templates[field] === "string");
-}
+const progress: ReadonlySet<EventKind> =
+  new Set(["generation_finished", "migration", "extinction", "fitness_awaited"] as const);
 
 /** The sentence about an event, and whether it is about the progress of the simulation. */
-export function event_text(event: Message): [string, boolean] {
-  const kind = event_kind(event);
-  return kind === undefined ?
+export function event_text(event: Event): [string, boolean] {
+  const about = kind_of(event);
+  return about === null ?
     [event.text ?? "", false] :
-    [capitalised(fill(templates[kind] as string, event[kind], event).text), progress.has(kind)];
+    [capitalised(fill(template_of_kind[about.kind], about.value, event).text), progress.has(about.kind)];
 }
 
 /** A text, and whether all values in it are present. */
@@ -47,7 +44,7 @@ interface Filled {
   present: boolean;
 }
 
-function fill(template: string, message: Message, event: Message): Filled {
+function fill(template: string, message: unknown, event: Event): Filled {
   const filled = {text: "", present: true};
   for (const [, plain, argument, alternatives] of template.matchAll(/([^[{]+)|\{(.*?)\}|\[(.*?)\]/g)) {
     if (argument !== undefined) {
@@ -63,7 +60,7 @@ function fill(template: string, message: Message, event: Message): Filled {
 }
 
 /** Fills in the text between braces. */
-function fill_argument(argument: string, message: Message, event: Message): Filled {
+function fill_argument(argument: string, message: unknown, event: Event): Filled {
   const parts = argument.split("; ").map((part): Filled => {
     const [path = "", rule = ""] = part.split(":"), fields = path.split("."), of_event = fields[0] === "event";
     return text_of_all(values_of(of_event ? event : message, of_event ? fields.slice(1) : fields), rule, event);
@@ -74,14 +71,15 @@ function fill_argument(argument: string, message: Message, event: Message): Fill
 }
 
 /** The values of a path: one, undefined if its field is absent; or all of a repeated field. */
-function values_of(value: any, fields: string[]): any[] {
+function values_of(value: unknown, fields: string[]): unknown[] {
   if (Array.isArray(value)) {
     return value.flatMap((one) => values_of(one, fields));
   }
-  return fields.length === 0 ? [value] : values_of(value?.[fields[0]!], fields.slice(1));
+  const [first, ...rest] = fields;
+  return first === undefined ? [value] : values_of((value as {[field: string]: unknown} | undefined)?.[first], rest);
 }
 
-function text_of_all(values: any[], rule: string, event: Message): Filled {
+function text_of_all(values: unknown[], rule: string, event: Event): Filled {
   const [kind = "", words] =
     [rule.split(" ", 1)[0], rule.includes(" ") ? rule.slice(rule.indexOf(" ") + 1) : undefined];
   const given = values.filter((value) => value !== undefined), any_given = given.length > 0;
@@ -89,15 +87,12 @@ function text_of_all(values: any[], rule: string, event: Message): Filled {
     case "count":
       return amount(BigInt(given.length), words);
     case "sum":
-      return amount(given.reduce((sum: bigint, value) => sum + BigInt(value), 0n), words);
+      return amount(given.reduce((sum: bigint, value) => sum + whole(value), 0n), words);
     case "max":
-      return {
-        text: one_decimal(values.length ? Math.max(...values.map((value) => value ?? 0)) : 0),
-        present: any_given
-      };
+      return {text: one_decimal(values.length ? Math.max(...values.map(number)) : 0), present: any_given};
     case "mean":
       return {
-        text: one_decimal(values.reduce((sum, value) => sum + (value ?? 0) / values.length, 0)),
+        text: one_decimal(values.reduce((sum: number, value) => sum + number(value) / values.length, 0)),
         present: any_given
       };
     case "if":
@@ -111,18 +106,29 @@ function text_of_all(values: any[], rule: string, event: Message): Filled {
   }
 }
 
+/** An absent value counts as 0, as in the protocol. */
+function number(value: unknown): number {
+  return Number(value ?? 0);
+}
+
+function whole(value: unknown): bigint {
+  return typeof value === "bigint" ? value : BigInt(number(value));
+}
+
 /** The text of one value by a rule that treats each value on its own. */
-function text_of(value: any, rule: string, event: Message): string {
+function text_of(value: unknown, rule: string, event: Event): string {
   switch (rule) {
     case "":
-      return with_separators(value ?? 0);
+      return with_separators(typeof value === "string" ? value : whole(value));
     case "text":
       return value === undefined ? "" : String(value);
     case "real":
-      return real_text(value ?? 0);
+      return real_text(number(value));
     default: {
       const named = templates[rule]!;
-      return value === undefined ? "" : typeof named === "string" ? fill(named, value, event).text : named[value] ?? "";
+      return value === undefined  ? "" :
+        typeof named === "string" ? fill(named, value, event).text :
+                                    named[String(value)] ?? "";
     }
   }
 }

@@ -103,7 +103,7 @@ export class SnapshotFeed {
     this.problem = "";
   }
 
-  /** Tells the listeners of the snapshot that was taken last. */
+  /** Calls the listeners after the snapshot was taken. */
   announce(snapshot: SnapshotInfo): void {
     for (const listener of [...this.#listeners]) {
       listener(snapshot);

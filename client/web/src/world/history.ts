@@ -40,8 +40,8 @@ export class WorldHistory {
     return run_id !== "" && this.#run_id !== "" && run_id !== this.#run_id;
   }
 
-  /** The number of generations whose statistics are kept: as many as the server keeps, but fewer in worlds of many genes
-   *  or islands. */
+  /** The number of generations whose statistics are kept: as many as the server keeps, but fewer in worlds of many
+   *  genes or islands. */
   get #generations_kept(): number {
     const world = this.#server.world(this.#world), genes = Math.max(1, world?.gene_names?.length ?? 1),
           islands = Math.max(1, world?.island_count ?? 1);

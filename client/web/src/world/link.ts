@@ -1,6 +1,6 @@
 // link: the link to a moment of a world: "#world=default&generation=12&tick=600&island=0&organism=7".
 // client/core/page_link.h and client/python/evod/page_link.py define the same form. Pure functions.
-import {with_separators} from "../texts/numbers";
+import {link_texts} from "../texts/link";
 import type {Moment} from "./time_scale";
 
 /** What a link shows. null: the link does not say. */
@@ -46,13 +46,13 @@ export function read_link(hash: string): ReadLink|null {
       moment[name] = Math.min(Math.max(number, 0), Number.MAX_SAFE_INTEGER);
       got[name] = text;
     } else {
-      wrong.push(`${name}: got "${text}", allowed whole numbers`);
+      wrong.push(link_texts.no_number(name, text));
     }
   }
   if (moment.tick !== null && moment.generation === null) {
     moment.tick = null;
     if (!fields.has("generation")) {
-      wrong.push(`tick: got ${got.tick} without a generation, allowed only with a generation`);
+      wrong.push(link_texts.tick_alone(got.tick ?? ""));
     }
   }
   return moment.world === null && Object.keys(got).length === 0 && wrong.length === 0 ? null : {moment, got, wrong};
@@ -60,8 +60,7 @@ export function read_link(hash: string): ReadLink|null {
 
 /** "island: got 7, world default has 0 to 3" */
 export function wrong_number(read: ReadLink, name: LinkNumber, subject: string, first: number, last: number): string {
-  const range = (first === last ? "only " : `${with_separators(first)} to `) + with_separators(last);
-  return `${name}: got ${read.got[name] ?? read.moment[name]}, ${subject} has ${range}`;
+  return link_texts.out_of_range(name, read.got[name] ?? read.moment[name] ?? "", subject, first, last);
 }
 
 /** A number within a range. Adds a sentence to `read.wrong` if the link asks for one outside. */
@@ -87,9 +86,9 @@ export function nearest(read: ReadLink, wanted: Moment, field: string, allowed: 
   }
   const first = Number(range[1]), last = Number(range[2] ?? range[1]);
   if (name === "tick") {
-    read.wrong.push(wrong_number(read, name, `generation ${with_separators(wanted.generation ?? 0)}`, first, last));
+    read.wrong.push(wrong_number(read, name, link_texts.generation(wanted.generation ?? 0), first, last));
     return {generation: wanted.generation, tick: Math.min(Math.max(wanted.tick!, first), last)};
   }
-  read.wrong.push(wrong_number(read, name, "the run", first, last));
+  read.wrong.push(wrong_number(read, name, link_texts.run, first, last));
   return wanted.generation! > last ? {} : {generation: first};
 }

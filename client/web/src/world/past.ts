@@ -1,5 +1,7 @@
 // Past: shows earlier moments of a live world in a replay, which the server computes for this page.
 import type {SnapshotInfo} from "../core/snapshot";
+import {access_texts} from "../texts/access";
+import {common_texts} from "../texts/common";
 
 import type {Changes} from "./changes";
 import type {RunControl} from "./control";
@@ -9,7 +11,6 @@ import {Refusal} from "./server";
 import type {Moment, RunRange} from "./time_scale";
 
 const range_ms = 1000; // between two requests for the range of a replay, which grows with the live world
-const no_runs = "The run of this world is not stored.";
 
 /** The live world whose past is shown. */
 export interface LiveWorld {
@@ -42,7 +43,9 @@ export class Past {
   /** Why the past of the world cannot be shown, as a sentence; empty if it can. */
   get problem(): string {
     const server = this.#feed.server, live = server.world(this.#live.name());
-    return !live ? "No world is open." : live.storage || live.replay ? server.why_not("open_replay") : no_runs;
+    return !live                  ? common_texts.no_world :
+      live.storage || live.replay ? server.why_not("open_replay") :
+                                    access_texts.run_not_stored;
   }
 
   /** Whether a replay is shown, also one that another page or the server has opened. */
@@ -76,8 +79,8 @@ export class Past {
     return {first_generation: begin.generation, last_generation, first_tick: begin.tick, last_tick: tick};
   }
 
-  /** The first and the last tick of a generation, counted from the start of the run; null if the history does not contain
-   *  them. */
+  /** The first and the last tick of a generation, counted from the start of the run; null if the history does not
+   *  contain them. */
   ticks_of(generation: number): {first: number; last: number}|null {
     const range = this.range, snapshot = this.#feed.snapshot;
     if (!range) {

@@ -5,8 +5,8 @@ import {undo_texts} from "../texts/undo";
 import {Refusal} from "./server";
 import type {ViewedWorld} from "./world";
 
-/** The refusals after which nothing of what was placed can be removed any more: it was eaten or removed, or its generation
- *  has ended. */
+/** The refusals after which nothing of what was placed can be removed any more: it was eaten or removed, or its
+ *  generation has ended. */
 const gone: ReadonlySet<string> = new Set([
   "REASON_FIELD_INVALID", "REASON_GENERATION_CHANGED", "REASON_GENERATION_OVER", "REASON_ORGANISM_NOT_FOUND",
   "REASON_ISLAND_NOT_FOUND"
@@ -35,8 +35,8 @@ export async function place(world: ViewedWorld, what: Omit<Place, "world"|"islan
   });
 }
 
-/** Returns whether anything was removed. Each thing has its own request, because a request with one invalid id is refused
- *  as a whole. */
+/** Returns whether anything was removed. Each thing has its own request, because a request with one invalid id is
+ *  refused as a whole. */
 async function remove_what_is_left(world: ViewedWorld, name: string, island: number, placed: Placed): Promise<boolean> {
   const {generation} = placed, removals = kinds.flatMap((kind) => (placed[kind] ?? []).map((id) => ({[kind]: [id]})));
   const results = await Promise.allSettled(

@@ -2,7 +2,8 @@
 //
 // Every request goes through respond(), whose answers and events keep `worlds` up to date. The page opens watching:
 // until the user takes part, may() allows only requests that change nothing for others.
-import {refusal_text} from "../texts/texts";
+import {access_texts} from "../texts/access";
+import {refusal_text} from "../texts/refusals";
 
 import {Changes} from "./changes";
 import {of_tab} from "./storage";
@@ -144,24 +145,21 @@ export class Server {
   /** Why the user may not send this request now, as a sentence; empty if he may. */
   why_not(kind: RequestKind, world?: string): string {
     if (this.state.phase !== "open") {
-      return "There is no connection to the server.";
+      return access_texts.no_connection;
     }
     const rule = this.#rules.get(kind);
     if (!rule) {
-      return "The server does not know this request.";
+      return access_texts.unknown_request;
     }
     const own_replay = world !== undefined && this.#replays.has(world);
     if (own_replay && rule.viewer_in_own_replay) {
       return "";
     }
     if (this.#roles.indexOf(this.role) < this.#roles.indexOf(rule.role ?? "ROLE_UNSPECIFIED")) {
-      return rule.role === "ROLE_ADMIN" && this.role !== "ROLE_VIEWER" ?
-        "Only the role admin may create and delete worlds." :
-        "You are connected as a viewer: read-only.";
+      return rule.role === "ROLE_ADMIN" && this.role !== "ROLE_VIEWER" ? access_texts.admin_only :
+                                                                         access_texts.read_only;
     }
-    return changing_kinds.has(rule.kind ?? "") && !this.taking_part ?
-      "You are watching. Turn on “Take part” to change worlds." :
-      "";
+    return changing_kinds.has(rule.kind ?? "") && !this.taking_part ? access_texts.watching : "";
   }
 
   /** Whether this page has sent such a command to the world within the last own_event_ms, so that the user knows of the

@@ -33,7 +33,8 @@ export class Tokens {
     return stored;
   }
 
-  /** Takes the token of a link that the user has followed. Returns the token to connect with; null: the session goes on. */
+  /** Takes the token of a link that the user has followed. Returns the token to connect with; null: the session goes
+   *  on. */
   follow(linked: string): string|null {
     const works = this.#working === this.used;
     this.offered = works && linked !== this.used ? linked : null;

@@ -18,8 +18,8 @@ export async function undo(context: PanelContext, verb: UndoVerb): Promise<void>
   await context.attempt(async () => context.notify(await context.world().undo[verb]()));
 }
 
-/** What a key does to the last change; null: nothing. Ctrl+Z undoes, Ctrl+Shift+Z and Ctrl+Y redo; a text field undoes its
- *  own text. */
+/** What a key does to the last change; null: nothing. Ctrl+Z undoes, Ctrl+Shift+Z and Ctrl+Y redo; a text field undoes
+ *  its own text. */
 export function undo_verb_of(event: KeyboardEvent): UndoVerb|null {
   const key = event.key.toLowerCase(), {target} = event;
   if (!(event.ctrlKey || event.metaKey) || event.altKey || (key !== "z" && key !== "y")) {

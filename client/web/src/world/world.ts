@@ -1,8 +1,8 @@
 // ViewedWorld: the world that one pane shows: live, or a replay of its past. Each of its parts has one subject.
 //
 // Owner        main; one per pane. The pane and the panels read it, and change what is shown by its methods.
-// Polling      organism and population are read at most 4 times a second, and only while the page is visible and something
-//              shows them. Everything else follows from answers, events and snapshots.
+// Polling      organism and population are read at most 4 times a second, and only while the page is visible and
+//              something shows them. Everything else follows from answers, events and snapshots.
 import {type FromWorker, kind_of, type Look, none_left} from "../core/messages";
 import type {Event} from "../core/protocol";
 import type {SnapshotInfo} from "../core/snapshot";

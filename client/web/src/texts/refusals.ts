@@ -1,0 +1,18 @@
+// Refusals of the server as sentences.
+import type {Status} from "../core/protocol";
+
+import {capitalised} from "./numbers";
+
+/** "fork_world.name" → "name". */
+function last_field_name(field: string): string {
+  return field.slice(field.lastIndexOf(".") + 1);
+}
+
+/** The message of a Status on one line, with the names of fields in place of their paths. */
+export function refusal_text({message = "", violations = []}: Status): string {
+  let text = message;
+  for (const {field = ""} of violations) {
+    text = text.replace(`${field}: `, `${last_field_name(field)}: `);
+  }
+  return capitalised(text.replace("\n  ", ": ").replaceAll("\n  ", "; "));
+}
