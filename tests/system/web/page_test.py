@@ -118,6 +118,33 @@ class Page(Case):
         self.assertLess(sum(covered), 4)
         plain.until(lambda: right() >= 0.99 * count, "the colours of the organisms", pause_s=0.2)
 
+    def test_trails_lead_to_their_organisms(self):
+        server = self.start(generation_s=60.0, population_size=4)
+        control, browser = self.client(server), self.browser
+        control.run_to(300)
+        browser.open(self.page(server))
+        places = []
+        for tick in (300, 320, 340, 360):
+            control.run_to(tick)
+            self.shown_tick(tick)
+            organisms = browser.columns()["organisms"]
+            places.append(numpy.array([organisms["x"], organisms["y"]]).T / 16)
+        browser.set_camera(360, 225, 1)
+        browser.run("evod.app.world().set_look({ trails: false })")
+        without = plain.until(lambda: self.settled(None), "an image without trails", pause_s=0.2)[0]
+        browser.run("evod.app.world().set_look({ trails: true })")
+        drawn = plain.until(lambda: self.settled(without), "an image with trails", pause_s=0.2)[0]
+        rows, columns = numpy.nonzero((drawn != without).any(axis=2))
+        _, _, width, height = browser.canvas()
+        changed = numpy.array([columns + 360 - width / 2, rows + 225 - height / 2]).T
+        away = numpy.hypot(*(changed[:, None] - numpy.concatenate(places)[None]).transpose(2, 0, 1)).min(axis=1)
+        self.assertLess(away.max(), 40)  # px: half of the way in 20 ticks, and the width of a line
+
+    def settled(self, before):
+        """What the canvas shows, in a list, once it is the same twice and differs from `before`."""
+        one, other = self.browser.pixels(), self.browser.pixels()
+        return [one] if (one == other).all() and (before is None or (one != before).any()) else []
+
     @staticmethod
     def body_colours(health):
         """Of the vivid skin on a dark background: from no to full health. client/viewer/drawing/palette.cpp."""

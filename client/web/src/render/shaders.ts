@@ -76,6 +76,8 @@ Source read_source(int index) {
   float radius = float(shape.z) * zoom;
   source.middle += ahead * 0.35 * radius;
   source.extent = ahead * (0.65 * radius + heading_beyond);
+#elif FORM == LINE || FORM == ARROW || FORM == SOFT_LINE
+  source.extent = vec2(shape.zw - shape.xy) * zoom;
 #else
   source.extent = vec2(shape.zw) * zoom;
 #endif
