@@ -54,6 +54,9 @@ TEST_F(LoopsWithDisk, WaitingWorldsAreShownAndReplaysContinue) {
     std::erase(reported, simulation::StorageState::Behind);
     // A state is reported again after Failing or Behind.
     reported.erase(std::unique(reported.begin(), reported.end()), reported.end());
+    if (!reported.empty() && reported.front() == simulation::StorageState::KeepsUp) {
+        reported.erase(reported.begin()); // after Behind
+    }
     EXPECT_EQ(reported, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
 }
 

@@ -130,6 +130,7 @@ TEST_F(MouseToolInWorldTest, OnlyChangesByOthersCauseANotice) {
     session.send(message);
     placed.mutable_by()->set_user("anna");
     placed.set_food(0, 26);
+    message.mutable_event()->set_text("anna placed 1 food on island 1");
     session.send(message);
     until(world, [&] { return !notices.empty(); });
     EXPECT_THAT(notices, ElementsAre("anna placed 1 food on island 1"));

@@ -128,14 +128,18 @@ TEST_F(WorldFeedTest, KnowsTheStateOfTheDisk) {
     reported = info("default", evod::v1::RUN_STATE_RUNNING);
     reported.mutable_storage()->set_state(evod::v1::STORAGE_STATE_FAILING);
     reported.mutable_storage()->set_reason("it is full");
+    reported.mutable_storage()->set_text("commands are refused: it is full");
     session.send(message);
     until(world, [&] { return world.feed.storage().reason() == "it is full"; });
     auto& storage = *message.mutable_event()->mutable_storage_changed()->mutable_storage();
     storage.set_state(evod::v1::STORAGE_STATE_STALLED);
+    storage.set_text("worlds wait for the disk");
     session.send(message);
     until(world, [&] { return core::worlds_wait(world.feed.storage()); });
     EXPECT_TRUE(notices.empty());
     storage.set_state(evod::v1::STORAGE_STATE_KEEPS_UP);
+    storage.clear_text();
+    message.mutable_event()->set_text("run files can be written again");
     session.send(message);
     until(world, [&] { return !notices.empty(); });
     EXPECT_THAT(notices, ElementsAre("Run files can be written again"));
