@@ -133,7 +133,7 @@ TEST_F(MouseToolInWorldTest, OnlyChangesByOthersCauseANotice) {
     message.mutable_event()->set_text("anna placed 1 food on island 1");
     session.send(message);
     until(world, [&] { return !notices.empty(); });
-    EXPECT_THAT(notices, ElementsAre("anna placed 1 food on island 1"));
+    EXPECT_THAT(notices, ElementsAre("Anna placed 1 food on island 1"));
 }
 
 TEST_F(MouseToolInWorldTest, AViewerCannotPlace) {
