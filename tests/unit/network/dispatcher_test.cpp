@@ -399,11 +399,13 @@ TEST_F(DispatcherTest, EventsAndDamagedWorldsReachSubscribers) {
     streams.subscribe(*client.session, EventSubscription{});
     v1::Event event;
     event.set_world("v");
+    event.mutable_extinction()->set_generation(3);
     outbox.event(event);
     outbox.damaged({.name = "w", .run_id = {}, .reason = "cut off"});
     take_commands();
     ASSERT_EQ(client.events.size(), 2u);
     EXPECT_EQ(client.events[0].world(), "v");
+    EXPECT_EQ(client.events[0].text(), "all organisms on island 0 have died in generation 3");
     EXPECT_EQ(client.events[1].world(), "w");
     EXPECT_TRUE(client.events[1].has_world_damaged());
 }

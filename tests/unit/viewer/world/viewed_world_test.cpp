@@ -76,9 +76,10 @@ TEST_F(ViewedWorldTest, NoticesChangesOfOtherClients) {
     changed.mutable_by()->set_client("evoctl");
     changed.mutable_by()->set_address("127.0.0.1");
     changed.add_changed()->set_name("mutation_chance");
+    message.mutable_event()->set_text("evoctl 127.0.0.1 set mutation_chance to 0.5, revision 2");
     session.send(message);
     until(world, [&] { return !notices.empty(); });
-    EXPECT_THAT(notices, ElementsAre("evoctl 127.0.0.1 changed mutation_chance"));
+    EXPECT_THAT(notices, ElementsAre("Evoctl 127.0.0.1 set mutation_chance to 0.5, revision 2"));
     auto paused = info("default", evod::v1::RUN_STATE_PAUSED);
     paused.set_tick(60);
     *message.mutable_event()->mutable_run_control_changed()->mutable_world() = paused;
