@@ -88,7 +88,7 @@ Commands::Commands(asio::io_context& context, runtime::Simulations& simulations,
                   request.mutable_release_lease()->set_world(world);
                   handle_own(std::move(request), lease);
               }}
-    , reply_cache_{{.kept_per_key = retries_kept,
+    , reply_cache_{{.kept_per_key = answers_cached_max,
                     .keys_max = client_keys_max,
                     .bytes_max = retry_bytes_max,
                     .evicted_max = evicted_keys_max},
@@ -147,7 +147,7 @@ void Commands::handle(Session& session, const v1::Request& request) {
                                        .violations = {{"request_id", "an unused id", std::to_string(id)}},
                                        .reason = base::Reason::RequestIdReused}));
     case ReplyCache::Verdict::TooOld:
-        limit_counters_.met(Limit::RetriesKept);
+        limit_counters_.met(Limit::CachedAnswers);
         return session.answer(refused(
             refusal(base::RefusalCode::FailedPrecondition,
                     "the request is older than the cached answers and may have been applied; it is not applied again: "

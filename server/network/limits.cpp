@@ -101,7 +101,7 @@ constexpr LimitRow table[] = {
      "bytes in the name of a new world", "the server refuses the request with `INVALID_ARGUMENT`"},
     {Limit::ClientKeyBytes, "client_key_bytes_max", protocol::client_key_bytes_max, "bytes in a `client_key`",
      "the server refuses the request with `INVALID_ARGUMENT`"},
-    {Limit::RetriesKept, "retries_kept", retries_kept, "cached answers of each `client_key`",
+    {Limit::CachedAnswers, "answers_cached_max", answers_cached_max, "cached answers of each `client_key`",
      "the server evicts the oldest answer; if the client repeats that command, the server refuses it with "
      "`FAILED_PRECONDITION`"},
     {Limit::ClientKeys, "client_keys_max", client_keys_max,

@@ -25,7 +25,7 @@ constexpr std::size_t watched_islands_max = 16'384; // four times the number of 
 constexpr double snapshot_rate_hz_max = 120;
 // The server raises lower rates to this rate, because the period of a much lower rate would overflow the clock.
 constexpr double snapshot_rate_hz_min = 1e-6;
-constexpr std::uint32_t retries_kept = 1000;
+constexpr std::uint32_t answers_cached_max = 1000;
 constexpr std::uint32_t client_keys_max = 256;
 constexpr std::uint32_t exports_max = 8;
 constexpr std::uint32_t breedings_max = 4;
@@ -87,7 +87,7 @@ enum class Limit : std::uint8_t {
     RunningBreedings,
     WorldNameBytes,
     ClientKeyBytes,
-    RetriesKept,
+    CachedAnswers,
     ClientKeys,
     HistoryGenerationsKept,
     HistoryGenerations,

@@ -158,7 +158,7 @@ base::Result<void> Server::open_replay(const ReplayedRun& run) {
 bool Server::run() {
     simulation::Laboratory worlds;
     if (archive_) {
-        static_assert(replay::Archive::answers_kept_of_ended == retries_kept &&
+        static_assert(replay::Archive::answers_kept_of_ended == answers_cached_max &&
                       replay::Archive::answers_of_ended_bytes_max == retry_bytes_max &&
                       replay::Archive::keys_kept_of_ended == evicted_keys_max);
         dispatcher_.commands().restore(archive_->take_used_keys(), archive_->take_answers());

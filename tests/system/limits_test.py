@@ -387,12 +387,12 @@ class Requests(Case):
         client = self.come(server)
         limits = client.welcome.limits
         first = client.call(client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
-        for i in range(2, limits.retries_kept + 1):
+        for i in range(2, limits.answers_cached_max + 1):
             client.call(client_key="old", request_id=i, pause=c.Pause(world="default"))
         again = client.call(client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
         self.assertEqual(again, first)
-        client.call(client_key="old", request_id=limits.retries_kept + 1, pause=c.Pause(world="default"))
-        with self.meets(client, "retries_kept"):
+        client.call(client_key="old", request_id=limits.answers_cached_max + 1, pause=c.Pause(world="default"))
+        with self.meets(client, "answers_cached_max"):
             client.call(PRECONDITION, client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
         first = client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1))
         for i in range(limits.client_keys_max // 2 - 2):  # and "old"; a user has half of the keys

@@ -449,7 +449,7 @@ class Resending(WithServer):
         self.client.call(request_id=5, client_key="retry-other-key", pause=c.Pause())
 
     def test_one_too_old_is_refused_and_not_run_again(self):
-        kept = self.client.welcome.limits.retries_kept
+        kept = self.client.welcome.limits.answers_cached_max
         world = self.new_world()
         old = c.Request(request_id=1, client_key="retry-old", run=c.Run(world=world))
         self.again(self.client, old)

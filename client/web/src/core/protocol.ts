@@ -1347,8 +1347,8 @@ export interface Limits {
   history_generations_max?: number;
   /** requests waiting for the simulation */
   mailbox_commands_max?: number;
-  /** cached answers per client_key */
-  retries_kept?: number;
+  /** answers cached per client_key, for commands that are sent again */
+  answers_cached_max?: number;
   world_name_bytes_max?: number;
   client_key_bytes_max?: number;
   /** keys with cached answers */
