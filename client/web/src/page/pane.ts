@@ -111,6 +111,7 @@ export class Pane {
     if (snapshot !== null) {
       this.#take_size_of_island(snapshot.width_px, snapshot.height_px);
     }
+    this.view.follow_selection();
     const alive = snapshot === null ?
       "" :
       pane_texts.alive(snapshot.generation, snapshot.live?.alive_count ?? snapshot.counts.organisms);
