@@ -14,7 +14,6 @@ export interface FamilyTree {
   width: number;
 }
 
-/** A place in the tree. */
 export interface Place {
   row: number;
   place: number;

@@ -54,7 +54,6 @@ export class Freezer {
     return await result_of<Kept[]>(kept.getAll());
   }
 
-  /** The genes of an entry. */
   async population(name: string): Promise<Population> {
     const {kept, genes} = await this.#begin("readonly");
     const [about, islands] = await Promise.all(
@@ -153,7 +152,6 @@ export function room_problem(entries: readonly Pick<Kept, "genes_bytes">[], gene
                                            "";
 }
 
-/** The number of organisms of an entry. */
 export function kept_count(kept: Kept): number {
   return kept.organism_counts.reduce((sum, count) => sum + count, 0);
 }
@@ -167,7 +165,6 @@ export function name_of_origin(origin: WorldOrigin): string {
 
 let freezer: Freezer|null = null;
 
-/** The freezer of this page. */
 export function kept_organisms(): Freezer {
   freezer ??= new Freezer();
   return freezer;

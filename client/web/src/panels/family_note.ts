@@ -10,7 +10,6 @@ import type {ViewedWorld} from "../world/world";
 import {FamilyChanges} from "./family_changes";
 import {type MarksInTree, organism_at} from "./family_marks";
 
-/** What the note speaks about. */
 export interface NoteSubject {
   tree: FamilyTree;
   of_all: CommonAncestors|null;
@@ -36,7 +35,6 @@ export class FamilyNote {
     this.element = h("div", {class: "family-reading"}, this.#text, this.#genes, h("div", {class: "row"}, this.#mark));
   }
 
-  /** Describes another organism. */
   read(world: ViewedWorld, at: Place|null): void {
     this.at = at;
     this.#draw();
@@ -54,7 +52,6 @@ export class FamilyNote {
     this.#draw();
   }
 
-  /** Another run is shown. */
   forget(): void {
     this.#changes.forget();
   }

@@ -6,7 +6,6 @@ import {number_in} from "../texts/numbers";
 import {set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
 
-/** An entry of the freezer with its genes. */
 export interface ShownEntry {
   kept: Kept;
   population: Population;

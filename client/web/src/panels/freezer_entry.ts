@@ -59,7 +59,6 @@ export class FreezerEntry {
         this.#confirm, this.#choice.element, this.#wrong, this.#placing.element, this.#problem, this.#genes.element);
   }
 
-  /** Shows an entry; null: none. */
   show(shown: ShownEntry|null): void {
     const before = this.#shown?.kept;
     if (shown && before?.name === shown.kept.name && before.kept_ms === shown.kept.kept_ms) {
@@ -100,8 +99,6 @@ export class FreezerEntry {
     const organism = this.#choice.chosen();
     return typeof organism === "string" ? organism : {organism, gene_names: this.#shown!.kept.gene_names};
   }
-
-  // ---- files, names ----
 
   #made_rename_form(): HTMLElement {
     const form: HTMLElement = h(

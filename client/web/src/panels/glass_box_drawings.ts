@@ -33,8 +33,6 @@ function drawing(width: number, height: number, label: string): SVGSVGElement {
     {class: "glass-drawing", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": label});
 }
 
-// ---- the wheel -------------------------------------------------------------------------------------------------
-
 /** The wheel of a breeding. Its slots are drawn once; show() moves the pointer. */
 export class WheelDrawing {
   readonly element: SVGSVGElement;
@@ -134,8 +132,6 @@ export class WheelDrawing {
   }
 }
 
-// ---- tournaments and ranks -------------------------------------------------------------------------------------
-
 /** The contestants of the tournament of pick `index`; the winners are framed. */
 export function draw_tournament(record: BreedingRecord, index: number, complete: boolean): HTMLElement {
   const contestants = contestants_of(record, index);
@@ -213,7 +209,6 @@ function draw_bars(
   return image;
 }
 
-/** Fitness by rank; for a wheel with fitness scaling, also the weights below. */
 export function draw_ranking(
   record: BreedingRecord, comparison: Comparison, copies: readonly number[], current: number|null, width: number,
   complete: boolean): HTMLElement {
@@ -333,8 +328,6 @@ export function draw_copies(
       glass_box_texts.rank_label(comparison.organisms.length - 1)));
   return image;
 }
-
-// ---- descendants -----------------------------------------------------------------------------------------------
 
 /** The next generation as a row of cells: elite, survivors, children. The cell of `current` is framed. */
 export function draw_descendants(

@@ -27,7 +27,6 @@ export class HoldControl {
     this.element = h("label", {class: "check", title: glass_box_texts.hold_help}, this.#held, glass_box_texts.hold);
   }
 
-  /** Sends the command that the hold needs now. */
   update(world: ViewedWorld): void {
     const may =
       !world.is_replay && world.server.may("run", world.shown) && world.server.may("run_until_tick", world.shown);

@@ -53,7 +53,6 @@ export class StepControls {
     this.#set_speed();
   }
 
-  /** Performs a move of the user. */
   move(act: () => void): void {
     act();
     this.#changed();

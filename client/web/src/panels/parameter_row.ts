@@ -62,12 +62,10 @@ export class ParameterRow {
         this.#control.slider, this.#refused, this.#help);
   }
 
-  /** Why the typed text is not a value; empty if it is one. */
   get typing_problem(): string {
     return this.#control.typing_problem;
   }
 
-  /** Shows the present state. */
   update(may: boolean): void {
     const {edits} = this.#context, i = this.parameter, violation = edits.violation(i);
     this.#control.update(may, violation !== null);
@@ -85,7 +83,6 @@ export class ParameterRow {
     this.#update_help();
   }
 
-  /** Forgets a text that was typed but is not a value. */
   forget(): void {
     this.#control.forget();
   }

@@ -81,8 +81,6 @@ export class ParametersPanel implements Panel {
     }
   }
 
-  // ---- RowContext ----
-
   get edits(): ParameterExchange["edits"] {
     return this.#exchange.edits;
   }
@@ -106,8 +104,6 @@ export class ParametersPanel implements Panel {
     }
   }
 
-  // ---- actions ----
-
   #apply(): void {
     if (this.edits.busy) {
       this.#exchange.apply_afterwards();
@@ -130,8 +126,6 @@ export class ParametersPanel implements Panel {
     this.#list.forget();
     this.touch();
   }
-
-  // ---- what is shown ----
 
   #show_changes(): void {
     this.#changed = true;

@@ -96,8 +96,6 @@ export class PlotsPanel implements Panel {
     this.#tabs.choose(quantities.find((one) => one === subject.quantity) ?? this.#tabs.chosen);
   }
 
-  // ---- data ----
-
   #follow(): void {
     const world = this.#context.world(), run = `${world.feed.pane} ${world.name} ${this.#run_id()}`;
     if (run !== this.#run) {
@@ -130,9 +128,6 @@ export class PlotsPanel implements Panel {
     await this.#context.attempt(() => this.#context.world().past.show(generation));
   }
 
-  // ---- plots ----
-
-  /** Draws another plot, soon. */
   #rebuild(): void {
     this.#drawn = "";
     this.#next_build_ms = 0;
@@ -175,8 +170,6 @@ export class PlotsPanel implements Panel {
   #last_generation(): number {
     return this.#table.column(null, "generation").at(-1) ?? 0;
   }
-
-  // ---- files ----
 
   /** "evod-default-3f2a9c01-fitness-generation-120" */
   #file_name(what: string): string {

@@ -97,7 +97,6 @@ export class PlotLegend {
   }
 }
 
-/** A sample of the style of a series. */
 export function swatch_of(series: Series): SVGElement {
   return swatch(series.colour, series.kind, series.dash ?? [], series.thickness ?? thickness_default);
 }

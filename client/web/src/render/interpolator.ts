@@ -85,7 +85,6 @@ export interface TileDensity {
   organisms: Int32Array;
 }
 
-/** A copy of a snapshot. */
 export class KeptSnapshot {
   info: SnapshotInfo|null = null;
   count = 0; // organisms in full detail

@@ -47,7 +47,6 @@ export class StreamedIsland {
     ++this.whole_version;
   }
 
-  /** Drops the snapshots. */
   clear(): void {
     this.at.clear();
     this.trails.clear();

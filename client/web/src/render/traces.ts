@@ -118,8 +118,6 @@ export function add_paths(
   return count;
 }
 
-// ---- flashes ---------------------------------------------------------------------------------------------------
-
 export interface Flash {
   kind: "food"|"poison"|"death";
   x_px: number;

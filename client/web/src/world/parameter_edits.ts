@@ -65,8 +65,6 @@ export class ParameterEdits {
   #undone: Change[][] = [];
   #edit_number = 0; // counts the changes of edits
 
-  // ---- what the server reports ----
-
   /** Sets the registry and clears everything else. */
   describe(registry: readonly ParameterDescription[]): void {
     this.registry = registry;
@@ -139,8 +137,6 @@ export class ParameterEdits {
     return this.registry.length > 0 && this.revision > 0;
   }
 
-  // ---- one parameter; i is its index in the registry ----
-
   current_value(i: number): ParameterValue {
     return this.#states[i]!.value;
   }
@@ -191,8 +187,6 @@ export class ParameterEdits {
     ];
   }
 
-  // ---- editing: clears the violations and the problem of the last refusal, because they are about earlier values ----
-
   /** Edits a value. A value equal to requested_value() removes the edit. */
   edit(i: number, value: ParameterValue): void {
     this.revert(i);
@@ -224,8 +218,6 @@ export class ParameterEdits {
     this.problem = "";
     this.#edit_number += 1;
   }
-
-  // ---- checks: the server checks the edits while the user makes them, and changes nothing ----
 
   /** Returns a dry run of the edits, and its number for checked(); null if there is no edit or a transaction is
    *  pending. */

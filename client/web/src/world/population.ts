@@ -44,7 +44,6 @@ export class PopulationReader {
     this.#read_of = "";
   }
 
-  /** Organisms were placed: the columns lack them. */
   lacks_placed(): void {
     this.#placed = true;
   }

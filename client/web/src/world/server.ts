@@ -227,8 +227,6 @@ export class Server {
     });
   }
 
-  // ---- messages of the worker ----
-
   #take(message: FromWorker): void {
     switch (message.kind) {
       case "rules":
