@@ -1,11 +1,11 @@
 // TimeMarks: what stands on the time line: labels of generations, and marks where parameters changed and where all
 // organisms died. They are rebuilt after a change, but not more often than every rebuild_ms.
 import type {GenerationStatistics} from "../core/protocol";
-import {marks_of} from "../plots/change_marks";
+import {marks_of} from "../plots/figures";
 import {with_separators} from "../texts/numbers";
 import {timeline_texts} from "../texts/timeline";
 import {h} from "../widgets/dom";
-import {type JoinedMark, joined_marks, marked_generations, type TimeScale} from "../world/time_scale";
+import {joined_marks, type JoinedMark, marked_generations, type TimeScale} from "../world/time_scale";
 import type {ViewedWorld} from "../world/world";
 
 const label_room_px = 56; // between labels

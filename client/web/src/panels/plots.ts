@@ -1,9 +1,7 @@
 // Plots panel: the statistics of a run, generation by generation, while it runs; compared with another world or an
 // earlier run.
-import {marks_of} from "../plots/change_marks";
 import {Comparison} from "../plots/comparison";
-import {extinctions, figure_of, quantities} from "../plots/figures";
-import type {Subject} from "../plots/figures";
+import {extinctions, figure_of, marks_of, quantities, type Subject} from "../plots/figures";
 import {history_csv} from "../plots/history_csv";
 import {HistoryTable} from "../plots/history_table";
 import {Plot} from "../plots/plot";
@@ -12,10 +10,7 @@ import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {h, set_text} from "../widgets/dom";
 import {accept_drops, save_file} from "../widgets/files";
 import type {Panel, PanelContext} from "../world/panel_context";
-import {QuantityTabs, ScopeChoice} from "./plots_choices";
-import {CompareChoice} from "./plots_compare";
-import {GeneChoice} from "./plots_genes";
-import {GeneHistogram} from "./plots_histogram";
+import {CompareChoice, GeneChoice, GeneHistogram, QuantityTabs, ScopeChoice} from "./plots_choices";
 
 const plot_height = 270; // CSS pixels
 const image_width = 1200, image_height = 700; // of a saved image, in pixels

@@ -10,8 +10,7 @@ import type {
   SetParameters} from "../core/protocol";
 import {parameter_words} from "../texts/parameter_words";
 import {actor_text} from "../texts/users";
-
-import {same, value_text} from "./parameter_values";
+import {same, value_text} from "./parameters";
 
 const transactions_kept = 100;
 const field_prefix = "set_parameters.";
