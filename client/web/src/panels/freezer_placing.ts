@@ -63,8 +63,9 @@ export class FreezerPlacing {
       return;
     }
     const {organism: {name, genes}, gene_names} = model;
-    if (this.#context.place_by_clicks({name: texts.a_copy_of(name), genes: [...genes], gene_names})) {
-      this.#context.notify(texts.placing(name));
+    const is_chosen = this.#context.place_by_clicks({name: texts.a_copy_of(name), genes: [...genes], gene_names});
+    if (is_chosen !== null) {
+      this.#context.notify(texts.placing(name), is_chosen);
     }
   }
 
