@@ -4,7 +4,7 @@
 #include "server/protocol/breeding.h"
 #include "server/protocol/refusals.h"
 #include "server/replay/breeding.h"
-#include "server/runtime/fork_check.h"
+#include "server/runtime/fork.h"
 #include "server/runtime/worker_pool.h"
 
 #include <algorithm>

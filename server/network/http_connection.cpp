@@ -283,13 +283,13 @@ std::optional<HttpAnswer> HttpConnection::refusal_of_upgrade(const Request& requ
 
 std::optional<HttpAnswer> HttpConnection::refusal_of_token(const Request& request) {
     const std::string token = bearer_token(request[http::field::authorization]);
-    const auto visitor = service_.admit(token, address_prefix_);
-    if (visitor) {
+    const auto user = service_.admit(token, address_prefix_);
+    if (user) {
         return std::nullopt;
     }
     service_.traffic.http_refused_tokens.add();
-    const auto code = visitor.error().code;
-    const std::string why = protocol::public_text(visitor.error().message);
+    const auto code = user.error().code;
+    const std::string why = protocol::public_text(user.error().message);
     HttpAnswer answer = refused(code == base::RefusalCode::Unauthenticated     ? http::status::unauthorized
                                 : code == base::RefusalCode::ResourceExhausted ? http::status::too_many_requests
                                                                                : http::status::service_unavailable,

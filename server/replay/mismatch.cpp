@@ -232,7 +232,7 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
 
 Found compare_island(const std::string& of_island, const IslandState& stored, const IslandState& simulated) {
     using simulation::Items;
-    const simulation::Fate &one = stored.fate, &other = simulated.fate;
+    const simulation::LifeRecords &one = stored.life_records, &other = simulated.life_records;
     if (auto found =
             compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, one.cause, other.cause)) {
         return found;

@@ -21,8 +21,8 @@ LARGER_FILES = {
     "tests/system/viewer/panels_test.cpp": "to be cut by its panels",
 }
 WIDER_FILES = {
-    "server/evolution/parameters.h": "a parameter is one line",
-    "server/parameters/parameters.h": "a parameter is one line",
+    "server/evolution/ga_parameters.h": "a parameter is one line",
+    "server/parameters/model_parameters.h": "a parameter is one line",
 }
 LARGER_FUNCTIONS = {
     "tests/determinism/scenarios.cpp": "a table, which a function initialises at its first call",

@@ -92,7 +92,7 @@ class Rules(unittest.TestCase):
         self.assertEqual(found(tidy.long_line, "a.py", "#" * 121 + "\n" + "#" * 120 + "\n"), [1])
         self.assertEqual(found(tidy.long_line, "client/web/src/a.ts", "/" * 121), [1])
         self.assertEqual(found(tidy.long_line, "server/a.h", "/" * 121), [1])
-        self.assertEqual(found(tidy.long_line, "server/evolution/parameters.h", "/" * 121), [])
+        self.assertEqual(found(tidy.long_line, "server/evolution/ga_parameters.h", "/" * 121), [])
 
     def test_python_names_are_defined_once_and_used(self):
         for text, lines in (("A = 1\nA = 2\n", [2]), ("_A = 1\n", [1]), ("_A = 1\nprint(_A)\n", []),

@@ -75,7 +75,7 @@ class OneOrganism : public testing::Test {
     }
 
     Items food, poison, none;
-    Living living;
+    LivingOrganisms living;
     physics::Circles bodies;
     BehaviourRules rules{};
     ChosenForces forces;

@@ -1,4 +1,4 @@
-#include "server/network/token_bucket.h"
+#include "server/network/rate_limit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class TokenBucketTest : public testing::Test {
+class RateLimitTest : public testing::Test {
   protected:
     int take_all() {
         int taken = 0;
@@ -17,14 +17,14 @@ class TokenBucketTest : public testing::Test {
         return taken;
     }
     runtime::Clock::time_point now{1000s};
-    TokenBucket bucket{100, 20, now};
+    RateLimit bucket{100, 20, now};
 };
 
-TEST_F(TokenBucketTest, ABurstIsAvailableAtOnce) {
+TEST_F(RateLimitTest, ABurstIsAvailableAtOnce) {
     EXPECT_EQ(take_all(), 20);
 }
 
-TEST_F(TokenBucketTest, TokensArriveAtTheirRateUpToTheCapacity) {
+TEST_F(RateLimitTest, TokensArriveAtTheirRateUpToTheCapacity) {
     take_all();
     now += 50ms;
     EXPECT_EQ(take_all(), 5);
@@ -36,7 +36,7 @@ TEST_F(TokenBucketTest, TokensArriveAtTheirRateUpToTheCapacity) {
     EXPECT_EQ(take_all(), 20);
 }
 
-TEST_F(TokenBucketTest, ASenderBelowTheRateNeverWaits) {
+TEST_F(RateLimitTest, ASenderBelowTheRateNeverWaits) {
     take_all();
     for (int i = 0; i < 1000; ++i) {
         now += 10ms;
@@ -44,7 +44,7 @@ TEST_F(TokenBucketTest, ASenderBelowTheRateNeverWaits) {
     }
 }
 
-TEST_F(TokenBucketTest, TakingMoreThanTheCapacityLeavesADebt) {
+TEST_F(RateLimitTest, TakingMoreThanTheCapacityLeavesADebt) {
     EXPECT_TRUE(bucket.take(50, now)) << "a whole burst is there";
     now += 300ms;
     EXPECT_FALSE(bucket.take(1, now)) << "30 are still to be paid for";
@@ -58,7 +58,7 @@ TEST_F(TokenBucketTest, TakingMoreThanTheCapacityLeavesADebt) {
     EXPECT_TRUE(bucket.take(1, now));
 }
 
-TEST_F(TokenBucketTest, WaitingForTheReportedTimeIsEnough) {
+TEST_F(RateLimitTest, WaitingForTheReportedTimeIsEnough) {
     take_all();
     EXPECT_EQ(bucket.time_for(10), 100ms);
     now += bucket.time_for(10);

@@ -1,4 +1,4 @@
-#include "server/runtime/fork_check.h"
+#include "server/runtime/fork.h"
 
 #include "server/base/inline_executor.h"
 #include "server/log/log.h"
@@ -45,6 +45,19 @@ base::Refusal unreadable_fork(const std::string& why) {
 }
 
 } // namespace
+
+bool begins_in_another_generation(const simulation::ForkWorld& command, const simulation::World& original) {
+    return command.at_generation && *command.at_generation != original.moment().generation;
+}
+
+simulation::World world_of_fork(const simulation::ForkWorld& command, simulation::World world,
+                                base::Executor& executor) {
+    if (command.at_generation) {
+        world = world.at_its_opening(executor);
+    }
+    world.become_fork();
+    return world;
+}
 
 CommandDone check_fork(CommandDone done, JobTurns::Turn& turn) {
     const ForkFile file = *std::exchange(done.fork, std::nullopt);

@@ -1,4 +1,4 @@
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include "server/parameters/schedule.h"
 #include "tests/unit/parameters/assignments.h"

@@ -1,4 +1,4 @@
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include "proto/text/number_text.h"
 #include "proto/text/suggestion.h"

@@ -1,4 +1,4 @@
-// Token bucket: a rate limit with an average rate and a maximum burst.
+// Rate limit: a token bucket, with an average rate and a maximum burst.
 //
 // Owner        a session, which limits the rate of its client's frames.
 #pragma once
@@ -9,13 +9,13 @@
 
 namespace evod::network {
 
-class TokenBucket {
+class RateLimit {
   public:
     using Clock = runtime::Clock;
 
     /// per_s  tokens added per second, > 0.
     /// burst  capacity and initial number of tokens, >= 1.
-    TokenBucket(double per_s, double burst, Clock::time_point now)
+    RateLimit(double per_s, double burst, Clock::time_point now)
         : per_s_{per_s}, burst_{burst}, tokens_{burst}, filled_{now} {}
 
     /// Takes this number of tokens. A request for more than `burst` tokens takes the whole burst and leaves a debt.

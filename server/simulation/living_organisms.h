@@ -1,10 +1,10 @@
-// Living: the living organisms as columns, and the fate of every organism that was born.
+// LivingOrganisms: the living organisms as columns, and the life records of every organism that was born.
 #pragma once
 
 #include "server/base/column.h"
 #include "server/base/state_hash.h"
 #include "server/evolution/chromosome.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/physics/bodies.h"
 
 #include <cstdint>
@@ -22,7 +22,7 @@ constexpr float heading_max = 3.14159274f + 1e-4f;
 
 /// Element i of every column belongs to the organism with body i; its id is the body's id. Columns are as long as those
 /// of physics::Circles, including placeholders of dead organisms (void bodies).
-struct Living {
+struct LivingOrganisms {
     base::Column<float> health;                     // −infinity for placeholders of dead organisms
     base::Column<float> loss_per_tick;              // health that a tick of life costs
     base::Column<float> normal_speed, impulse;      // gene units
@@ -69,10 +69,10 @@ constexpr std::uint32_t organism_hash_kind = 1;
 constexpr std::uint32_t heading_hash_kind = 8;
 /// Returns an organism's part of the state hash. organism_kernels().hash and brain_kernels().hash compute the parts of
 /// many organisms at once.
-base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t body);
+base::StateHash hash_of_organism(const physics::Circles& bodies, const LivingOrganisms& living, std::size_t body);
 
 /// What happened to each organism that was born, by id.
-struct Fate {
+struct LifeRecords {
     std::vector<std::uint32_t> lived_ticks; // ticks until death; 0 for living organisms
     std::vector<CauseOfDeath> cause;
     std::vector<std::uint32_t> food_eaten, poison_eaten;
@@ -80,7 +80,7 @@ struct Fate {
     void begin_generation(std::size_t organisms);
     /// Adds a living organism.
     void add();
-    friend bool operator==(const Fate&, const Fate&) = default;
+    friend bool operator==(const LifeRecords&, const LifeRecords&) = default;
 };
 
 } // namespace evod::simulation

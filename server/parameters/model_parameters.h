@@ -1,14 +1,14 @@
-// The registry of all parameters of a world: the parameters of the genetic algorithm (evolution/parameters.h), and the
+// The registry of all parameters of a world: the parameters of the genetic algorithm (evolution/ga_parameters.h), and the
 // parameters of the model, one line each below.
 //
 // Macros generate the struct, its defaults and the registry from these lines. Validation, JSON files, the protocol,
 // evoctl's help and docs/PARAMETERS.md use the registry, so a new parameter needs one new line, here or in
-// evolution/parameters.h, below the heading (TOPIC) under which people look for it.
+// evolution/ga_parameters.h, below the heading (TOPIC) under which people look for it.
 #pragma once
 
 #include "server/base/parameter.h"
 #include "server/base/result.h"
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 
 #include <optional>
 #include <span>

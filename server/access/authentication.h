@@ -1,4 +1,4 @@
-// Gate: authenticates sessions by their tokens.
+// Authentication: which user a session belongs to, by its token.
 //
 // Owner        the server, on the network thread.
 // Full         stores the failed logins of at most addresses_max addresses. Beyond that it drops the address whose
@@ -16,17 +16,17 @@
 
 namespace evod::access {
 
-/// The user behind a session.
-struct Visitor {
+/// The user of a session.
+struct AuthenticatedUser {
     std::string name; // name of the token; empty: no token
     Role role = Role::Admin;
     Digest token{};
 };
 
-class Gate {
+class Authenticator {
   public:
     using Clock = std::chrono::steady_clock;
-    // After a failed login the gate refuses unknown tokens from the same address for this time. Each further failure
+    // After a failed login, unknown tokens from the same address are refused for this time. Each further failure
     // doubles the time. A known token is always admitted. Tokens cannot be guessed, so known tokens need no rate limit.
     static constexpr std::chrono::milliseconds delay_min{500};
     static constexpr std::chrono::milliseconds delay_max{30'000};
@@ -38,19 +38,19 @@ class Gate {
     /// token_needed  true: a client without a token is refused; false: a client without a token becomes an admin.
     ///
     /// Refused if the token file is not trustworthy, or if a token is needed and the file contains none.
-    static base::Result<Gate> open(const std::optional<std::string>& folder, bool token_needed);
+    static base::Result<Authenticator> open(const std::optional<std::string>& folder, bool token_needed);
 
     /// Authenticates a client. Refuses with UNAUTHENTICATED if the token is missing or unknown, and with
     /// RESOURCE_EXHAUSTED if the token is unknown and the address must wait.
     ///
     /// address  key of the rate limit: the IPv4 address, or the /48 prefix of the IPv6 address.
-    base::Result<Visitor> admit(const std::string& token, const std::string& address, Clock::time_point now);
+    base::Result<AuthenticatedUser> admit(const std::string& token, const std::string& address, Clock::time_point now);
 
     /// Reads the token file again if it has changed, and returns whether it has changed. While the file is not
     /// trustworthy, new sessions are refused and existing sessions continue.
     bool refresh();
-    /// Whether the token with which the visitor was admitted is still valid.
-    bool is_still_valid(const Visitor& visitor) const;
+    /// Whether the token with which the user was admitted is still valid.
+    bool is_still_valid(const AuthenticatedUser& user) const;
     /// Why the token file cannot be used now; nullopt: it can be used.
     const std::optional<base::Refusal>& file_problem() const { return file_problem_; }
 
@@ -72,7 +72,7 @@ class Gate {
         friend bool operator==(const Stamp&, const Stamp&) = default;
     };
 
-    Gate(std::optional<std::string> folder, bool token_needed)
+    Authenticator(std::optional<std::string> folder, bool token_needed)
         : folder_{std::move(folder)}, token_needed_{token_needed} {}
     Stamp stamp() const;
     void fail(const std::string& address, Clock::time_point now);

@@ -1,4 +1,4 @@
-#include "server/runtime/fork_check.h"
+#include "server/runtime/fork.h"
 
 #include "tests/unit/recording/recorded_run.h"
 
@@ -10,9 +10,9 @@ namespace {
 using recording::change;
 using testing::HasSubstr;
 
-class ForkCheckTest : public testing::Test {
+class ForkTest : public testing::Test {
   protected:
-    ForkCheckTest() {
+    ForkTest() {
         auto data = *run_file::DataFolder::open(folder.path());
         recording::StorageThread thread{{}};
         recording::RecordedRun run{data, thread};
@@ -46,11 +46,11 @@ class ForkCheckTest : public testing::Test {
     std::string path;
 };
 
-TEST_F(ForkCheckTest, AWholeFileIsAnswered) {
+TEST_F(ForkTest, AWholeFileIsAnswered) {
     EXPECT_TRUE(checked(hash));
 }
 
-TEST_F(ForkCheckTest, AFileOfARunThatHasEndedIsFound) {
+TEST_F(ForkTest, AFileOfARunThatHasEndedIsFound) {
     std::filesystem::rename(path, path + "-ended");
     EXPECT_TRUE(checked(hash));
     EXPECT_FALSE(checked(hash + base::EntityHash{1, 2}.finish()));
@@ -58,14 +58,14 @@ TEST_F(ForkCheckTest, AFileOfARunThatHasEndedIsFound) {
     EXPECT_TRUE(checked(hash)) << "another command has ended the run";
 }
 
-TEST_F(ForkCheckTest, AnotherStateIsRefused) {
+TEST_F(ForkTest, AnotherStateIsRefused) {
     const auto refused = checked(hash + base::EntityHash{1, 2}.finish());
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, base::RefusalCode::DataLoss);
     EXPECT_THAT(refused.error().message, HasSubstr("another state hash"));
 }
 
-TEST_F(ForkCheckTest, ADamagedFileIsRefused) {
+TEST_F(ForkTest, ADamagedFileIsRefused) {
     change(path, "DELETE FROM population");
     const auto refused = checked(hash);
     ASSERT_FALSE(refused);

@@ -1,4 +1,4 @@
-#include "server/access/gate.h"
+#include "server/access/authentication.h"
 
 #include <sys/stat.h>
 
@@ -11,7 +11,7 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-Gate::Stamp Gate::stamp() const {
+Authenticator::Stamp Authenticator::stamp() const {
     struct stat about {};
     if (!folder_ || ::lstat(token_file_of(*folder_).c_str(), &about) != 0) {
         return {};
@@ -20,13 +20,13 @@ Gate::Stamp Gate::stamp() const {
             about.st_uid, about.st_ctim.tv_sec, about.st_ctim.tv_nsec};
 }
 
-Result<Gate> Gate::open(const std::optional<std::string>& folder, bool token_needed) {
-    Gate gate{folder, token_needed};
-    gate.refresh();
-    if (gate.file_problem_) {
-        return *gate.file_problem_;
+Result<Authenticator> Authenticator::open(const std::optional<std::string>& folder, bool token_needed) {
+    Authenticator authenticator{folder, token_needed};
+    authenticator.refresh();
+    if (authenticator.file_problem_) {
+        return *authenticator.file_problem_;
     }
-    if (token_needed && gate.tokens_.empty()) {
+    if (token_needed && authenticator.tokens_.empty()) {
         return refusal(
             RefusalCode::FailedPrecondition,
             folder ? "any client on the network could control this server, and there is no token yet: create one "
@@ -35,10 +35,10 @@ Result<Gate> Gate::open(const std::optional<std::string>& folder, bool token_nee
                    : "any client on the network could control this server, and tokens need a folder: "
                      "listen on 127.0.0.1, or name a folder with --data");
     }
-    return gate;
+    return authenticator;
 }
 
-bool Gate::refresh() {
+bool Authenticator::refresh() {
     // The stamp is taken before the file is read, so that a later change is detected at the next check.
     const Stamp now = stamp();
     if (now == stamp_) {
@@ -53,15 +53,15 @@ bool Gate::refresh() {
     return true;
 }
 
-bool Gate::is_still_valid(const Visitor& visitor) const {
-    if (visitor.name.empty()) {
+bool Authenticator::is_still_valid(const AuthenticatedUser& user) const {
+    if (user.name.empty()) {
         return !token_needed_;
     }
-    const Token* token = find(tokens_, visitor.token);
-    return token != nullptr && token->name == visitor.name && token->role == visitor.role;
+    const Token* token = find(tokens_, user.token);
+    return token != nullptr && token->name == user.name && token->role == user.role;
 }
 
-void Gate::fail(const std::string& address, Clock::time_point now) {
+void Authenticator::fail(const std::string& address, Clock::time_point now) {
     ++failed_login_count_;
     std::erase_if(failures_, [&](const auto& item) { return now - item.second.last > forgotten_after; });
     if (failures_.size() >= addresses_max && !failures_.contains(address)) {
@@ -74,9 +74,10 @@ void Gate::fail(const std::string& address, Clock::time_point now) {
     failures.not_before = now + delay;
 }
 
-Result<Visitor> Gate::admit(const std::string& token, const std::string& address, Clock::time_point now) {
+Result<AuthenticatedUser> Authenticator::admit(const std::string& token, const std::string& address,
+                                               Clock::time_point now) {
     if (token.empty() && !token_needed_) {
-        return Visitor{};
+        return AuthenticatedUser{};
     }
     if (file_problem_) {
         return refusal(RefusalCode::Unavailable,
@@ -84,10 +85,10 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
                        base::Reason::AuthenticationUnavailable);
     }
     const Digest digest = digest_of(token);
-    const Token* known = token.empty() ? nullptr : find(tokens_, digest);
-    if (known != nullptr) {
+    const Token* entry = token.empty() ? nullptr : find(tokens_, digest);
+    if (entry != nullptr) {
         failures_.erase(address);
-        return Visitor{known->name, known->role, digest};
+        return AuthenticatedUser{entry->name, entry->role, digest};
     }
     if (token.empty()) {
         return refusal(
@@ -98,7 +99,8 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
     if (const auto before = failures_.find(address); before != failures_.end() && now < before->second.not_before) {
         const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
         return refusal(RefusalCode::ResourceExhausted,
-                       "a login from this address failed: try again in " + std::to_string(wait.count()) + " s",
+                       "logins from this address are paused after a failed one: try again in " +
+                           std::to_string(wait.count()) + " s",
                        base::Reason::LoginTooSoon, {{"retry_after_s", std::to_string(wait.count())}});
     }
     fail(address, now);

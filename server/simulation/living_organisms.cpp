@@ -1,4 +1,4 @@
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 
 #include "server/base/assert.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 /// Calls visit(column, value) for every column, with the value of a void organism in that column.
 template <class F>
-void for_each_column(Living& living, F&& visit) {
+void for_each_column(LivingOrganisms& living, F&& visit) {
     visit(living.health, -std::numeric_limits<float>::infinity());
     visit(living.loss_per_tick, 0.0f);
     visit(living.normal_speed, 0.0f);
@@ -39,13 +39,13 @@ float loss_per_tick(const evolution::BodyGenes& genes, const parameters::Paramet
 
 } // namespace
 
-void Living::clear(std::uint32_t weight_count) {
+void LivingOrganisms::clear(std::uint32_t weight_count) {
     for_each_column(*this, [](auto& column, float) { column.clear(); });
     weights.clear();
     weight_count_ = weight_count;
 }
 
-void Living::resize(std::size_t size) {
+void LivingOrganisms::resize(std::size_t size) {
     for_each_column(*this, [&](auto& column, float filling) {
         column.resize(size, filling);
         column.resize(physics::padded(size), filling);
@@ -53,7 +53,7 @@ void Living::resize(std::size_t size) {
     weights.resize(physics::padded(size) * weight_count_);
 }
 
-void Living::put(std::size_t body, const evolution::BodyGenes& genes, const parameters::Parameters& p) {
+void LivingOrganisms::put(std::size_t body, const evolution::BodyGenes& genes, const parameters::Parameters& p) {
     EVOD_ASSERT(body < health.size());
     health[body] = genes(evolution::BaseHealth);
     loss_per_tick[body] = simulation::loss_per_tick(genes, p);
@@ -66,13 +66,13 @@ void Living::put(std::size_t body, const evolution::BodyGenes& genes, const para
     }
 }
 
-void Living::put_brain(std::size_t body, std::span<const float> new_weights, float new_heading) {
+void LivingOrganisms::put_brain(std::size_t body, std::span<const float> new_weights, float new_heading) {
     EVOD_ASSERT(std::abs(new_heading) <= heading_max);
     heading[body] = new_heading;
     put_weights(body, new_weights);
 }
 
-void Living::put_weights(std::size_t body, std::span<const float> new_weights) {
+void LivingOrganisms::put_weights(std::size_t body, std::span<const float> new_weights) {
     EVOD_ASSERT(new_weights.size() == weight_count_);
     float* place = weights.data() + first_weight(body);
     for (const float weight : new_weights) {
@@ -81,7 +81,7 @@ void Living::put_weights(std::size_t body, std::span<const float> new_weights) {
     }
 }
 
-void Living::reorder(const physics::Reordering& reordering) {
+void LivingOrganisms::reorder(const physics::Reordering& reordering) {
     for_each_column(*this, [&](auto& column, float filling) { reordering.apply(column, filling); });
     weights.resize(physics::padded(reordering.size()) * weight_count_);
 }
@@ -101,7 +101,7 @@ BodyShape body_shape(float body_size_gene, const parameters::Parameters& p) {
             body_size_gene * static_cast<float>(p.mass_per_unit_kg)};
 }
 
-base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t body) {
+base::StateHash hash_of_organism(const physics::Circles& bodies, const LivingOrganisms& living, std::size_t body) {
     base::StateHash hash = base::hash_of({.kind = organism_hash_kind,
                                           .id = bodies.id[body],
                                           .a = static_cast<std::uint32_t>(bodies.x[body]),
@@ -121,14 +121,14 @@ base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& l
     return hash;
 }
 
-void Fate::begin_generation(std::size_t organisms) {
+void LifeRecords::begin_generation(std::size_t organisms) {
     lived_ticks.assign(organisms, 0);
     cause.assign(organisms, CauseOfDeath::Alive);
     food_eaten.assign(organisms, 0);
     poison_eaten.assign(organisms, 0);
 }
 
-void Fate::add() {
+void LifeRecords::add() {
     lived_ticks.push_back(0);
     cause.push_back(CauseOfDeath::Alive);
     food_eaten.push_back(0);
