@@ -280,8 +280,6 @@ void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Came
     const Population* population = island_view.population();
     if (island_view.options.colour_by == ColourBy::Health) {
         add_health_colours(organisms, ColourScale{island_view.options.ramp, 0, full_health_}, colours_);
-    } else if (population != nullptr && island_view.options.colour_by == ColourBy::Lineage) {
-        add_family_colours(organisms, island_view.families(), island_view.family_colours(), colours_);
     } else if (population != nullptr && island_view.options.gene < population->gene_count()) {
         add_gene_colours(organisms, *population, island_view.options.gene,
                          gene_scale(*population, island_view.options.gene, island_view.options.ramp), colours_);

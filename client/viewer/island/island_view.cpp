@@ -82,7 +82,7 @@ bool IslandView::needs_population(bool points_at) const {
     const auto drawn = [&](Which which) { return which == Which::All || (which == Which::Pointed && any_pointed); };
     const bool forces = drawn(options.forces);
     const bool current_needed =
-        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage || lineage_wanted_ ||
+        options.colour_by == ColourBy::Gene ||
         drawn(options.radii) || forces ||
         (organism_history_ && (organism_history_->waits_for_children() ||
                                (!organism_history_->ended() && organism_history_->ranges().empty())));
@@ -94,48 +94,9 @@ bool IslandView::needs_population(bool points_at) const {
     return !complete || (forces && population_tick_ != tick_);
 }
 
-void IslandView::take_lineage(std::uint32_t island) {
-    if (lineage_is_current()) {
-        return;
-    }
-    lineage_version_ = lineage().version();
-    lineage_bases_ = lineage_bases(lineage(), island);
-    if (const Population* complete = population_poll_.complete()) {
-        find_families(*complete, island);
-    }
-}
-
-/// Counts the lineages from the generation that the lineage data choose. Without these data, counts them from the first
-/// generation. While the generation of the population is not yet in the lineage data, the lineages are unknown.
-void IslandView::find_families(const Population& population, std::uint32_t island) {
-    const std::uint64_t generation = population.generation(), since_before = families_since_;
-    if (lineage().contains(generation)) {
-        families_since_ = lineage_base_of(generation);
-        families_ = Families{ancestors_of(lineage(), generation, island, families_since_)};
-    } else if (lineage().empty() || generation < lineage().first()) {
-        families_since_ = 1;
-        families_ = population.families();
-    } else {
-        families_ = {};
-        return;
-    }
-    if (families_since_ != since_before || coloured_run_ != shown_.run_id) {
-        family_colours_ = {}; // founders have other numbers
-        coloured_run_ = shown_.run_id;
-    }
-    family_colours_.update(families_);
-}
-
-void IslandView::take_population(std::uint32_t island) {
+void IslandView::take_population() {
     const Population* complete = population_poll_.complete();
-    if (complete == nullptr) {
-        return;
-    }
-    if (taken_count_ != population_poll_.complete_count()) {
-        taken_count_ = population_poll_.complete_count();
-        find_families(*complete, island);
-    }
-    if (organism_history_) {
+    if (complete != nullptr && organism_history_) {
         organism_history_->add(*complete);
     }
 }
@@ -210,11 +171,6 @@ void IslandView::keep_selection(ViewedWorld& world) {
 void IslandView::forget() {
     IslandView fresh;
     fresh.options = options;
-    fresh.lineage_poll_ = std::move(lineage_poll_);
-    // Lineages keep their colours on other islands and in replays of the run.
-    fresh.families_since_ = families_since_;
-    fresh.family_colours_ = family_colours_;
-    fresh.coloured_run_ = std::move(coloured_run_);
     fresh.kept_ = std::move(kept_);
     if (fresh.kept_) {
         fresh.kept_->out_of_sight = true;
@@ -279,11 +235,8 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
         parents_poll_.reset();
         organism_tick_ = ~std::uint64_t{0};
     }
-    lineage_poll_->update(world, lineage_wanted_ || options.colour_by == ColourBy::Lineage, now);
-    take_lineage(world.feed.island());
-    take_population(world.feed.island());
+    take_population();
     const bool population_wanted = needs_population(points_at);
-    lineage_wanted_ = false;
     if (population_poll_.update(world, population_of(world), population_wanted, now)) {
         population_tick_ = tick_;
     }
@@ -317,9 +270,6 @@ void IslandView::next_colouring() {
         }
         break;
     case ColourBy::Health:
-        options.colour_by = ColourBy::Lineage;
-        break;
-    case ColourBy::Lineage:
         options.colour_by = ColourBy::Nothing;
         break;
     }

@@ -7,8 +7,6 @@
 
 #include "client/viewer/island/flashes.h"
 #include "client/viewer/island/marks.h"
-#include "client/viewer/world/lineage_base.h"
-#include "client/viewer/world/lineage_poll.h"
 #include "client/viewer/world/organism_history.h"
 #include "client/viewer/world/population_poll.h"
 #include "client/viewer/world/viewed_world.h"
@@ -76,7 +74,7 @@ class IslandView {
     using Clock = core::SnapshotInterpolator::Clock;
 
     ViewOptions options;
-    /// Switches to the next colouring in this cycle: nothing, each gene, health, lineage.
+    /// Switches to the next colouring in this cycle: nothing, each gene, health.
     void next_colouring();
 
     /// Islands with at least this many organisms per generation are streamed in part. Smaller islands are streamed
@@ -111,25 +109,6 @@ class IslandView {
     }
     /// Returns why the population is unknown, as a sentence. Empty if it is known or has been requested.
     std::string problem() const { return population_poll_.problem(); }
-    /// Returns the lineages of population(), and the generation of the ancestors from which they are counted. The
-    /// number of a founder is its index in this generation, counted island after island.
-    const Families& families() const { return families_; }
-    std::uint64_t families_since() const { return families_since_; }
-    /// Returns whether lineage_base_of() knows every generation in lineage(). Not between an answer of the server and
-    /// the next update().
-    bool lineage_is_current() const {
-        return lineage_version_ == lineage().version() && lineage_bases_.empty() == lineage().empty();
-    }
-    /// Returns the generation from which the lineages of a generation in lineage() are counted.
-    std::uint64_t lineage_base_of(std::uint64_t generation) const {
-        return lineage_bases_[generation - lineage().first()];
-    }
-    const FamilyColours& family_colours() const { return family_colours_; }
-    /// Returns the parents of all organisms of the run, as far as they have been received. They are requested to colour
-    /// organisms by lineage, and while want_lineage() is called in every frame.
-    const Lineage& lineage() const { return lineage_poll_->lineage(); }
-    const std::string& lineage_problem() const { return lineage_poll_->problem(); }
-    void want_lineage() { lineage_wanted_ = true; }
     const Trails& trails() const { return trails_; }
     const Flashes& flashes() const { return flashes_; }
     /// Returns the history of the organism that was selected last, even after its generation has ended. Null if no
@@ -154,9 +133,7 @@ class IslandView {
     void forget();
     void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
                        const Camera& camera);
-    void take_lineage(std::uint32_t island);
-    void take_population(std::uint32_t island);
-    void find_families(const Population& population, std::uint32_t island);
+    void take_population();
     void request_organism(ViewedWorld& world, Clock::time_point now);
     void request_parents(ViewedWorld& world, Clock::time_point now);
     void keep_selection(ViewedWorld& world);
@@ -172,16 +149,7 @@ class IslandView {
     Poll organism_poll_{poll_interval};
     Poll parents_poll_;
     bool awaits_parents_ = false;
-    std::uint64_t taken_count_ = 0;                         // complete populations received
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
-    Families families_;
-    std::uint64_t families_since_ = 1;
-    FamilyColours family_colours_;
-    std::string coloured_run_; // the run to which these colours belong
-    bool lineage_wanted_ = false;
-    std::unique_ptr<LineagePoll> lineage_poll_ = std::make_unique<LineagePoll>(); // kept for replays of the same run
-    std::vector<std::uint64_t> lineage_bases_;
-    std::uint64_t lineage_version_ = 0; // of the lineage, at the last update of lineage_bases_
     Trails trails_;
     Flashes flashes_;
     std::optional<OrganismHistory> organism_history_;

@@ -2,7 +2,6 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/panels/family_tree/family_tree_panel.h"
 #include "client/viewer/panels/freezer_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
@@ -45,7 +44,6 @@ Panels::Panels() {
     places_.push_back({std::make_unique<PlotsPanel>(), 7});
     places_.push_back({std::make_unique<PhysicsPanel>(), 9});
     places_.push_back({std::make_unique<FreezerPanel>(), 10});
-    places_.push_back({std::make_unique<FamilyTreePanel>(), 11});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
     }

@@ -35,7 +35,7 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::Fit, .key = Key::F, .help = "show the whole island"},
     {.action = Action::Fit, .key = Key::Home},
     {.action = Action::Follow, .key = Key::L, .help = "follow the selected organism; again: stop"},
-    {.action = Action::NextColouring, .key = Key::C, .help = "colour by a gene, health, lineage, nothing"},
+    {.action = Action::NextColouring, .key = Key::C, .help = "colour by a gene, health, nothing"},
     {.action = Action::Radii, .key = Key::V, .help = "perception radii: of the organism at the mouse, of all, of none"},
     {.action = Action::Forces, .key = Key::G, .help = "forces: of the organism at the mouse, of all, of none"},
     {.action = Action::Trails, .key = Key::T, .help = "show or hide trails"},

@@ -44,7 +44,7 @@ void read_line(SidebarSettings& settings, const Field& field) {
     }
 }
 
-constexpr std::array<std::string_view, 4> colourings{"nothing", "gene", "health", "lineage"}; // by ColourBy
+constexpr std::array<std::string_view, 3> colourings{"nothing", "gene", "health"}; // by ColourBy
 
 constexpr std::pair<std::string_view, bool ViewOptions::*> switches[] = {
     {"trails", &ViewOptions::trails},

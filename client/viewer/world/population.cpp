@@ -9,8 +9,6 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::uint32_t no_founder = ~std::uint32_t{0}; // the ancestor is an organism that a user placed
-
 std::uint32_t number_at(std::string_view bytes, std::size_t index) {
     std::uint32_t number = 0;
     for (unsigned i = 0; i < 4; ++i) {
@@ -72,14 +70,10 @@ std::optional<std::string> Population::add(const evod::v1::Population& page) {
     if (page.targets().size() != 8 * count) {
         return wrong("targets", page.targets().size(), 8 * count);
     }
-    // Either all pages of a population contain parents and founders, or none does.
+    // Either all pages of a population contain parents, or none does.
     const bool parents_expected = begun_ ? has_parents() : !page.parents().empty();
     if (page.parents().size() != (parents_expected ? 8 * count : 0)) {
         return wrong("parents", page.parents().size(), parents_expected ? 8 * count : 0);
-    }
-    const bool founders_expected = begun_ ? !founders_.empty() : !page.founders().empty();
-    if (page.founders().size() != (founders_expected ? 4 * count : 0)) {
-        return wrong("founders", page.founders().size(), founders_expected ? 4 * count : 0);
     }
     for (const auto& [field, floats] : {std::pair<const char*, const std::string&>{"genes", page.genes()},
                                         {"forces", page.forces()},
@@ -105,9 +99,6 @@ std::optional<std::string> Population::add(const evod::v1::Population& page) {
             append(page.parents(), column, count, parents_[column]);
         }
     }
-    if (founders_expected) {
-        append(page.founders(), 0, count, founders_);
-    }
     choices_.insert(choices_.end(), page.choices().begin(), page.choices().end());
     if (complete()) {
         finish();
@@ -128,7 +119,6 @@ void Population::finish() {
         }
         ranges_.push_back(range);
     }
-    families_ = Families{founders_};
 }
 
 std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {

@@ -6,7 +6,6 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
-#include "client/viewer/world/families.h"
 #include "evod/v1/commands.pb.h"
 #include "proto/codec/snapshot_codec.h"
 
@@ -61,8 +60,6 @@ class Population {
 
     // The following functions require a complete population.
     Range range(std::size_t gene) const { return ranges_[gene]; }
-    /// Returns the families by ancestor in the first generation. Empty if the server sends no founders.
-    const Families& families() const { return families_; }
     /// Returns the children of an organism of the previous generation, ordered by id.
     std::vector<std::uint32_t> children_of(std::uint32_t parent) const;
 
@@ -74,11 +71,9 @@ class Population {
     std::size_t organism_count_ = 0;
     std::vector<std::vector<float>> genes_;
     std::array<std::vector<std::uint32_t>, 2> parents_; // by id; empty in the first generation
-    std::vector<std::uint32_t> founders_;               // empty if the server sends none
     std::vector<std::uint8_t> choices_;
     std::array<std::vector<float>, 2> forces_, targets_;
     std::vector<Range> ranges_;
-    Families families_;
 };
 
 /// Returns the ids of the living organisms of a population, in increasing order. Returns nullopt if it is unknown which

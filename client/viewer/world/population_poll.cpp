@@ -60,7 +60,7 @@ void PopulationPoll::take(const evod::v1::Population& page) {
 }
 
 std::string PopulationPoll::problem() const {
-    return poll_.is_unsupported()    ? "This server sends no genes, lineages and forces; a newer version does"
+    return poll_.is_unsupported()    ? "This server sends no genes and forces; a newer version does"
            : poll_.problem().empty() ? unreadable_
                                      : poll_.problem();
 }

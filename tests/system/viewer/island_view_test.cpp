@@ -102,16 +102,6 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsGene) {
     expect_colours(image, colours);
 }
 
-TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsFamily) {
-    island_view().options.colour_by = ColourBy::Lineage;
-    const sf::Image image = draw_with_population();
-    std::vector<Colour> colours; // founders are 0, 1, 2, 0, …: families of four, three and three
-    for (const std::uint32_t id : snapshot.entities->organisms.id) {
-        colours.push_back(palette::lineages[id % 3]);
-    }
-    expect_colours(image, colours);
-}
-
 TEST_F(IslandViewTest, ForceLinesLeadToTheTargets) {
     const sf::Image before = draw_when([&] { return world().feed.snapshot() != nullptr; });
     EXPECT_EQ(count(before, palette::seeks), 0u);

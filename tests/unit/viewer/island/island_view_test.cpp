@@ -429,7 +429,7 @@ TEST(IslandView, CyclesThroughTheColourings) {
         island_view.next_colouring();
         seen.push_back(island_view.options.colour_by);
     }
-    EXPECT_THAT(seen, testing::ElementsAre(ColourBy::Health, ColourBy::Lineage, ColourBy::Nothing, ColourBy::Health))
+    EXPECT_THAT(seen, testing::ElementsAre(ColourBy::Health, ColourBy::Nothing, ColourBy::Health, ColourBy::Nothing))
         << "genes only once they are known";
 }
 

@@ -48,19 +48,6 @@ TEST(Population, TheFirstGenerationHasNoParents) {
     EXPECT_TRUE(population.children_of(1).empty());
 }
 
-TEST(Population, PlacedOrganismsBelongToNoFamily) {
-    Population population{2};
-    auto page = page_of(0, 4, 4);
-    page.clear_founders();
-    for (const std::uint32_t founder : {1u, 1u, ~0u, ~0u}) {
-        put(*page.mutable_founders(), founder);
-    }
-    ASSERT_EQ(population.add(page), std::nullopt);
-    EXPECT_EQ(population.families().count(), 1u);
-    EXPECT_EQ(population.families().of(1), 0);
-    EXPECT_EQ(population.families().of(3), Families::none);
-}
-
 TEST(Population, AnOrganismPlacedBetweenPagesOutdatesThem) {
     Population population{2};
     EXPECT_FALSE(population.is_outdated_by(page_of(0, 3, 5)));
@@ -108,19 +95,6 @@ TEST(Population, IsCompleteWithoutOrganisms) {
     Population population{2};
     ASSERT_EQ(population.add(page_of(0, 0, 0)), std::nullopt);
     EXPECT_TRUE(population.complete());
-}
-
-TEST(Population, FamiliesAreThoseOfTheFounders) {
-    Population population{2};
-    auto page = page_of(0, 20, 20);
-    ASSERT_EQ(population.add(page), std::nullopt);
-    EXPECT_EQ(population.families().count(), 3u);
-    EXPECT_EQ(population.families().of(4), 1) << "founder 1";
-    page.clear_founders();
-    Population unknown{2};
-    ASSERT_EQ(unknown.add(page), std::nullopt);
-    EXPECT_TRUE(unknown.families().shown().empty());
-    EXPECT_EQ(unknown.families().of(3), Families::none);
 }
 
 TEST(Population, RejectsInvalidPages) {
