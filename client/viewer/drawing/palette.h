@@ -116,19 +116,8 @@ constexpr Colour seeks = kinds[4];
 constexpr Colour flees = kinds[5];
 
 constexpr Colour plot_background{252, 252, 253};
-constexpr Colour plot_grid{226, 226, 230};
-// Colours of the lines and bars of plots.
 constexpr Colour series_orange = kinds[0];
-constexpr Colour series_sky = kinds[1];
-constexpr Colour series_green = kinds[2];
 constexpr Colour series_blue = kinds[4];
-constexpr Colour series_vermilion = kinds[5];
-constexpr Colour series_purple = kinds[6];
-constexpr Colour series_grey{110, 110, 116};
-constexpr Colour plot_mark{74, 58, 150}; // a change of parameters
-// Colours of the integrators in the time step demonstration.
-constexpr Colour explicit_euler = kinds[5];
-constexpr Colour symplectic_euler = kinds[4];
 
 } // namespace palette
 } // namespace evod::viewer

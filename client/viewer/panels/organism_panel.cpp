@@ -1,10 +1,8 @@
 #include "client/viewer/panels/organism_panel.h"
 
-#include "client/core/duration.h"
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/brain_diagram.h"
-#include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/world/freezer.h"
 #include "client/viewer/world/status_text.h"
 
@@ -45,30 +43,7 @@ void build_gene(const std::string& name, float value, const Population::Range& r
                            double{range.mean}));
 }
 
-void build_health(const std::vector<OrganismHistory::Health>& points) {
-    std::vector<double> s, health;
-    double most = 1;
-    for (const OrganismHistory::Health& point : points) {
-        s.push_back(point.s);
-        health.push_back(point.health);
-        most = std::max(most, health.back());
-    }
-    most = axis_end(most);
-    Plot plot{.title = "Health, axis from 0 to " + shown_number(most)};
-    plot.series.push_back({.colour = palette::organism, .x = s, .y = health});
-    curve_widget("##health", plot, {0, most}, 5 * ImGui::GetFontSize());
-    ImGui::TextDisabled(
-        "%s", points.size() > 1
-                  ? ("since you selected it, " + core::duration(points.back().s - points.front().s) + " ago").c_str()
-                  : "since you selected it");
-}
-
 } // namespace
-
-double axis_end(double most) {
-    const double step = nice_step(most / 5);
-    return step * std::max(std::ceil(most / step), 1.0);
-}
 
 std::string shown_parents(const evod::v1::OrganismInfo& info, OrganismHistory::Origin origin) {
     if (info.has_placed_tick()) {
@@ -169,8 +144,6 @@ void OrganismPanel::build(Context& context) {
     build_life(context, *history);
     ImGui::Separator();
     build_parents(context, *history);
-    ImGui::Separator();
-    build_health(history->health());
     ImGui::Separator();
     build_genes(context, *history);
     ImGui::Separator();

@@ -30,8 +30,6 @@ class OrganismPanel : public Panel {
     void build_genes(Context& context, const OrganismHistory& history);
     void build_offspring(const OrganismHistory& history);
 };
-/// Returns the end of the axis for values from 0 to `most`: the next multiple of a round number.
-double axis_end(double most);
 
 /// Returns the organism's fate as text: "died of hunger after 12.3 s", "alive when last seen after 40.0 s; its
 /// generation has ended", "alive for 12.3 s, …".

@@ -8,12 +8,22 @@ namespace evod::viewer {
 
 namespace {
 
-/// The widgets that no other panel of evoview has. Of a name that ends in a space, the begin decides.
+// The widgets that no other panel of evoview has. Of a name that ends in a space, the begin decides.
 constexpr std::string_view glass_box_widgets[] = {
-    "Tabs/Glass box", "Glass box",   "Generation", "Play the picks", "Show its picks", "birth of the selected organism",
-    "the newest",     "bet first",   "play each",  "hold the world", "steps/s",        "step",
-    "score",          "hits so far", "Step",       "Theory",         "Pick ",          "bet on ",
+    "Generation", "Play the picks", "Show its picks", "birth of the selected organism",
+    "the newest", "bet first",      "play each",      "hold the world",
+    "steps/s",    "step",           "score",          "hits so far",
+    "Step",       "Theory",         "Pick ",          "bet on ",
     "Why ",
+};
+constexpr std::string_view family_widgets[] = {"tree", "tree of generation ", "colour the island by lineage, too"};
+constexpr std::string_view plots_widgets[] = {
+    "running mean", "compare", "compare: ", "gene",        "group",       "living only",
+    "Save CSV",     "Save PNG", "image width", "image height", "path of another CSV file",
+};
+
+constexpr std::string_view physics_widgets[] = {
+    "Bodies of this island", "Effect of the tick length", "a spring", "damped motion", "tick, ms", "use the tick of this world",
 };
 
 struct PagePanel {
@@ -21,10 +31,18 @@ struct PagePanel {
     unsigned function_key;
     std::span<const std::string_view> widgets;
 };
-constexpr PagePanel page_panels[] = {{"Glass box", 8, glass_box_widgets}};
+constexpr PagePanel page_panels[] = {
+    {"Glass box", 8, glass_box_widgets},
+    {"Family tree", 11, family_widgets},
+    {"Plots", 7, plots_widgets},
+    {"Physics", 9, physics_widgets},
+};
 
 bool has(const PagePanel& panel, std::string_view widget) {
-    const bool in_panel = widget.starts_with(panel.tab) && widget.substr(panel.tab.size()).starts_with('/');
+    constexpr std::string_view tabs = "Tabs/";
+    widget.remove_prefix(widget.starts_with(tabs) ? tabs.size() : 0);
+    const bool in_panel =
+        widget == panel.tab || (widget.starts_with(panel.tab) && widget.substr(panel.tab.size()).starts_with('/'));
     return in_panel || std::ranges::any_of(panel.widgets, [&](std::string_view name) {
                return name.ends_with(' ') ? widget.starts_with(name) : widget == name;
            });

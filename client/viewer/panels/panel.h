@@ -19,7 +19,6 @@ namespace evod::viewer {
 class Freezer;
 class MouseTool;
 class NewWorldDialog;
-class RunHistory;
 
 class Panel {
   public:
@@ -29,7 +28,6 @@ class Panel {
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
         // Panels sets the following members.
-        const RunHistory* history = nullptr; // of the world
         Freezer* freezer = nullptr;
         NewWorldDialog* new_world = nullptr;
         MouseTool* tool = nullptr;

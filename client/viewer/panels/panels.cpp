@@ -5,8 +5,6 @@
 #include "client/viewer/panels/freezer_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
-#include "client/viewer/panels/physics/physics_panel.h"
-#include "client/viewer/panels/plots/plots_panel.h"
 #include "client/viewer/panels/run_panel.h"
 #include "client/viewer/panels/view_panel.h"
 #include "client/viewer/panels/worlds_panel.h"
@@ -34,15 +32,13 @@ ImVec2 size_of(Rectangle place) {
 
 } // namespace
 
-// F1 shows the help, F12 collapses the sidebar. F8 belonged to a panel that is now in the page (page_panels.cpp).
+// F1 shows the help, F12 collapses the sidebar. The other function keys belonged to panels that are now in the page (page_panels.cpp).
 Panels::Panels() {
     places_.push_back({std::make_unique<WorldsPanel>(), 2});
     places_.push_back({std::make_unique<RunPanel>(), 3});
     places_.push_back({std::make_unique<ParametersPanel>(), 4});
     places_.push_back({std::make_unique<ViewPanel>(), 5});
     places_.push_back({std::make_unique<OrganismPanel>(), 6});
-    places_.push_back({std::make_unique<PlotsPanel>(), 7});
-    places_.push_back({std::make_unique<PhysicsPanel>(), 9});
     places_.push_back({std::make_unique<FreezerPanel>(), 10});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
@@ -137,9 +133,6 @@ double Panels::width(unsigned window_pixels, double scale) const {
 
 void Panels::build(Panel::Context context, Rectangle sidebar) {
     keyboard_.reset();
-    RunHistory& history = histories_.of(context.world);
-    history.update(context.world, context.now);
-    context.history = &history;
     context.freezer = &freezer_;
     context.new_world = &new_world_;
     context.tool = &tool_;

@@ -9,7 +9,6 @@
 #include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/panels/panel.h"
-#include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/panels/summary.h"
 #include "client/viewer/world/freezer.h"
 #include "client/viewer/world/mouse_tool.h"
@@ -102,7 +101,6 @@ class Panels {
     SidebarSettings settings_;
     std::vector<Place> places_;
     std::vector<std::string_view> titles_;
-    RunHistories histories_;
     Summary summary_;
     Freezer freezer_;
     NewWorldDialog new_world_;

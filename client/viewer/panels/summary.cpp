@@ -4,9 +4,8 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/island/island_renderer.h"
 #include "client/viewer/island/styles.h"
+#include "client/viewer/panels/fitness_curve.h"
 #include "client/viewer/panels/new_world_dialog.h"
-#include "client/viewer/panels/plots/figures.h"
-#include "client/viewer/panels/plots/run_history.h"
 #include "client/viewer/world/mouse_tool.h"
 #include "client/viewer/world/status_text.h"
 
@@ -19,8 +18,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float curve_height = 84; // pixels at scale 1
-constexpr float text_lines = 5;    // room for the sentences, so that the widgets below them stay in place
+constexpr float text_lines = 5; // room for the sentences, so that the widgets below them stay in place
 
 /// What a click in an island does, by MouseTool::Kind.
 constexpr std::array<std::string_view, MouseTool::names.size()> explanations{
@@ -43,7 +41,11 @@ void Summary::build_title(const ViewedWorld& world) {
 void Summary::build(Panel::Context& context, bool complete) {
     if (complete) {
         build_experiment(context);
-        build_curve(context);
+        history_.update(context.world, context.now);
+        if (const auto clicked = build_fitness_curve(history_.generations(), history_.complete(), context.gui)) {
+            context.world.show_generation(*clicked);
+        }
+        widgets::mark("Fitness curve");
     } else {
         ImGui::PushFont(&context.gui.label());
         build_marks(context);
@@ -101,36 +103,6 @@ void Summary::build_marks(const Panel::Context& context) {
         }
     }
     widgets::small_text(text.empty() ? "No organism is alive." : text, palette::text);
-}
-
-void Summary::build_curve(const Panel::Context& context) {
-    const History& history = context.history->history();
-    const auto generations = history.table().column(std::nullopt, "generation");
-    Figure figure = fitness_curves({history.table(), std::nullopt, "", history.changes()});
-    Plot& plot = figure.plot;
-    if (plot.series.empty()) {
-        plot.title = history.complete() ? "Fitness: the curve begins when the first generation ends"
-                                        : "Fitness: loading the earlier generations …";
-        plot.marks.clear();
-    } else {
-        plot.title = "Fitness, generation " + shown_number(generations.back());
-        plot.x_label = "generation";
-        plot.note_end = "A click shows this generation in a replay.";
-        plot.counted_x = true;
-    }
-    std::optional<Range> range;
-    for (const Series& series : plot.series) {
-        range = joined(range, range_of(series.raw));
-    }
-    const double least = range ? std::min(range->min, 0.0) : 0, most = range ? range->max : 1;
-    ImGui::PushFont(&context.gui.label());
-    const auto clicked =
-        curve_widget("##fitness", plot, with_room({least, most}, 0.05), curve_height * context.gui.scale());
-    ImGui::PopFont();
-    widgets::mark("Fitness curve");
-    if (clicked) {
-        context.world.show_generation(static_cast<std::uint64_t>(*clicked));
-    }
 }
 
 void Summary::build_buttons(Panel::Context& context) {

@@ -10,6 +10,7 @@
 #include "client/viewer/island/mark_painter.h"
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/world/experiment.h"
+#include "client/viewer/world/fitness_history.h"
 
 #include <optional>
 #include <string>
@@ -28,12 +29,12 @@ class Summary {
   private:
     void build_experiment(Panel::Context& context);
     void build_marks(const Panel::Context& context);
-    void build_curve(const Panel::Context& context);
     void build_buttons(Panel::Context& context);
     void build_speed(ViewedWorld& world);
     void build_tools(const Panel::Context& context);
 
     Experiment experiment_;
+    FitnessHistory history_;
     MarkPainter marks_;
     std::optional<double> factor_; // speed shown by the slider while the user drags it
     std::string problem_;          // why the typed speed is refused

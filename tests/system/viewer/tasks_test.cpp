@@ -94,15 +94,6 @@ TEST_F(TasksTest, CompareTwoWorlds) {
     play("key B", "click right/at 0.5,0.5");
 }
 
-TEST_F(TasksTest, CompareTheCurvesOfTwoWorlds) {
-    server.make_world({.name = "second", .parameters = {}});
-    server.run_generations("second", 3);
-    play(R"(click Tabs/Plots
-click compare
-click "compare: world second")",
-         "set compare \"world second\"");
-}
-
 TEST_F(TasksTest, CreateAWorldFromAnExperiment) {
     play(R"(click "New …"
 click islands

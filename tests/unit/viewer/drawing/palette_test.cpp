@@ -146,9 +146,9 @@ TEST(Palette, VioletIsNeverConfusedWithFoodOrPoison) {
 
 TEST(Palette, CurvesDifferForEveryColourVision) {
     for (const Vision& vision : visions) {
-        EXPECT_GT(difference(explicit_euler, symplectic_euler, vision), needed) << vision.name;
-        EXPECT_GT(difference(explicit_euler, text, vision), needed) << vision.name;
-        EXPECT_GT(difference(symplectic_euler, text, vision), needed) << vision.name;
+        EXPECT_GT(difference(series_orange, series_blue, vision), needed) << vision.name;
+        EXPECT_GT(difference(series_orange, plot_background, vision), needed) << vision.name;
+        EXPECT_GT(difference(series_blue, plot_background, vision), needed) << vision.name;
     }
 }
 

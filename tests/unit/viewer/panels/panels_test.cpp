@@ -59,7 +59,7 @@ TEST(Panels, EachPanelKeyShowsAPanelOrLeadsToThePage) {
     }
     EXPECT_EQ(panels.panel_at(4), 2u);
     EXPECT_EQ(panels.key_of(2), "F4");
-    EXPECT_EQ(panels.key_of(*panels.panel_at(9)), "F9") << "panels after one that is in the page keep their keys";
+    EXPECT_EQ(panels.key_of(*panels.panel_at(10)), "F10") << "panels after one that is in the page keep their keys";
     EXPECT_EQ(panels.panel_at(12), std::nullopt);
 }
 
