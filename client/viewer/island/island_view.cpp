@@ -78,14 +78,12 @@ PopulationPoll::Of IslandView::population_of(const ViewedWorld& world) const {
 }
 
 bool IslandView::needs_population(bool points_at) const {
-    const bool any_pointed = points_at || (organism_history_ && !organism_history_->ended());
+    const bool any_pointed = points_at || (selected_organism_ && !selected_organism_->ended());
     const auto drawn = [&](Which which) { return which == Which::All || (which == Which::Pointed && any_pointed); };
     const bool forces = drawn(options.forces);
     const bool current_needed =
-        options.colour_by == ColourBy::Gene ||
-        drawn(options.radii) || forces ||
-        (organism_history_ && (organism_history_->waits_for_children() ||
-                               (!organism_history_->ended() && organism_history_->ranges().empty())));
+        options.colour_by == ColourBy::Gene || drawn(options.radii) || forces ||
+        (selected_organism_ && !selected_organism_->ended() && selected_organism_->ranges().empty());
     if (!current_needed || population_poll_.is_unsupported() || gene_names_.empty()) {
         return false;
     }
@@ -96,8 +94,8 @@ bool IslandView::needs_population(bool points_at) const {
 
 void IslandView::take_population() {
     const Population* complete = population_poll_.complete();
-    if (complete != nullptr && organism_history_) {
-        organism_history_->add(*complete);
+    if (complete != nullptr && selected_organism_) {
+        selected_organism_->add(*complete);
     }
 }
 
@@ -106,62 +104,32 @@ void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
     evod::v1::Request request;
     request.mutable_get_organism()->set_world(world.feed.world());
     request.mutable_get_organism()->set_island(world.feed.island());
-    request.mutable_get_organism()->set_organism(organism_history_->id());
+    request.mutable_get_organism()->set_organism(selected_organism_->id());
     organism_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
-        if (response != nullptr && organism_history_) {
-            organism_history_->add(response->organism());
-            if (response->organism().has_brain()) {
-                organism_poll_.wait(brain_interval);
-            }
-        }
-    });
-}
-
-void IslandView::request_parents(ViewedWorld& world, Clock::time_point now) {
-    auto wanted = organism_history_->wanted_parent();
-    awaits_parents_ = wanted.has_value();
-    if (!wanted || parents_poll_.is_unsupported() || !parents_poll_.due(world, now)) {
-        return;
-    }
-    wanted->set_world(world.feed.world());
-    wanted->set_island(world.feed.island());
-    evod::v1::Request request;
-    *request.mutable_get_breeding() = *wanted;
-    parents_poll_.send(world, std::move(request), now, [this, wanted = *wanted](const evod::v1::Response* response) {
-        if (response != nullptr && organism_history_) {
-            organism_history_->add(wanted, response->breeding());
+        if (response != nullptr && selected_organism_) {
+            selected_organism_->add(response->organism());
         }
     });
 }
 
 // ---- the selection in other generations --------------------------------------------------------------------------
 
-void IslandView::go_to(ViewedWorld& world, const OrganismPlace& organism) {
-    kept_ = Kept{.run_id = shown_.run_id, .organism = organism, .followed = true, .out_of_sight = true};
-    world.feed.select(std::nullopt);
-    const bool shown = organism.island == world.feed.island() && organism.generation == generation_ && snapshot_ &&
-                       snapshot_->entities->organisms.index_of(organism.id).has_value();
-    if (shown) {
-        return;
-    }
-    world.feed.choose_island(organism.island);
-    world.show_generation(organism.generation);
-}
-
 /// Remembers the selection, or restores it when its generation is on the screen again.
 void IslandView::keep_selection(ViewedWorld& world) {
     if (const auto selected = world.feed.selected()) {
         kept_ = Kept{.run_id = shown_.run_id,
-                     .organism = {world.feed.island(), generation_, *selected},
+                     .island = world.feed.island(),
+                     .organism = *selected,
+                     .generation = generation_,
                      .followed = followed_.has_value()};
     } else if (kept_ && !kept_->out_of_sight) { // the user cleared the selection
         kept_.reset();
-    } else if (kept_ && kept_->run_id == shown_.run_id && kept_->organism.island == world.feed.island() &&
-               kept_->organism.generation == generation_ && world.replay.target() == nullptr) {
+    } else if (kept_ && kept_->run_id == shown_.run_id && kept_->island == world.feed.island() &&
+               kept_->generation == generation_ && world.replay.target() == nullptr) {
         kept_->out_of_sight = false;
-        world.feed.select(kept_->organism.id);
+        world.feed.select(kept_->organism);
         if (kept_->followed) {
-            followed_ = Followed{.id = kept_->organism.id};
+            followed_ = Followed{.id = kept_->organism};
         }
     }
 }
@@ -193,9 +161,9 @@ void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const c
     snapshot_ = snapshot;
     generation_ = about.generation();
     tick_ = about.tick();
-    if (organism_history_) {
-        organism_history_->add(*snapshot);
-        if (organism_history_->ended() && world.feed.selected() == organism_history_->id()) {
+    if (selected_organism_) {
+        selected_organism_->add_generation(generation_);
+        if (selected_organism_->ended() && world.feed.selected() == selected_organism_->id()) {
             world.feed.select(std::nullopt); // the id now belongs to another organism
             if (kept_) {
                 kept_->out_of_sight = true;
@@ -228,11 +196,9 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     }
     keep_selection(world);
     if (const auto selected = world.feed.selected();
-        selected && (!organism_history_ || organism_history_->id() != *selected || organism_history_->ended())) {
-        organism_history_.emplace(*selected, generation_);
-        organism_history_->add(*snapshot);
+        selected && (!selected_organism_ || selected_organism_->id() != *selected || selected_organism_->ended())) {
+        selected_organism_.emplace(*selected, generation_);
         organism_poll_.reset();
-        parents_poll_.reset();
         organism_tick_ = ~std::uint64_t{0};
     }
     take_population();
@@ -240,12 +206,9 @@ void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_po
     if (population_poll_.update(world, population_of(world), population_wanted, now)) {
         population_tick_ = tick_;
     }
-    const bool alive = organism_history_ && !organism_history_->ended() && !organism_history_->dead();
+    const bool alive = selected_organism_ && !selected_organism_->ended() && !selected_organism_->dead();
     if (organism_poll_.due(world, now) && alive && organism_tick_ != tick_) {
         request_organism(world, now);
-    }
-    if (organism_history_) {
-        request_parents(world, now);
     }
     update_stream(world, camera, now);
 }

@@ -7,8 +7,8 @@
 
 #include "client/viewer/island/flashes.h"
 #include "client/viewer/island/marks.h"
-#include "client/viewer/world/organism_history.h"
 #include "client/viewer/world/population_poll.h"
+#include "client/viewer/world/selected_organism.h"
 #include "client/viewer/world/viewed_world.h"
 
 #include <array>
@@ -62,13 +62,6 @@ class StreamedRegion {
     Clock::time_point changed_{};
 };
 
-/// Identifies an organism of a run. Every generation uses the same ids.
-struct OrganismPlace {
-    std::uint32_t island = 0;
-    std::uint64_t generation = 0;
-    std::uint32_t id = 0;
-};
-
 class IslandView {
   public:
     using Clock = core::SnapshotInterpolator::Clock;
@@ -92,13 +85,6 @@ class IslandView {
     /// Starts following the selected organism, or stops following it.
     void toggle_following(ViewedWorld& world);
 
-    /// Selects and follows an organism of any generation of the run. If it is not on the screen, shows its island, and
-    /// opens a replay at the start of its generation or seeks there. The organism is selected when its generation
-    /// appears.
-    void go_to(ViewedWorld& world, const OrganismPlace& organism);
-    /// Returns whether parents of the selected organism are being requested.
-    bool awaits_parents() const { return awaits_parents_ && parents_poll_.problem().empty(); }
-
     // Functions that return data received from the server or derived from it.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
     const GeneGroups& gene_groups() const { return gene_groups_; }
@@ -111,15 +97,14 @@ class IslandView {
     std::string problem() const { return population_poll_.problem(); }
     const Trails& trails() const { return trails_; }
     const Flashes& flashes() const { return flashes_; }
-    /// Returns the history of the organism that was selected last, even after its generation has ended. Null if no
-    /// organism has been selected.
-    const OrganismHistory* organism_history() const { return organism_history_ ? &*organism_history_ : nullptr; }
+    /// Returns the organism that was selected last, even after its generation has ended. Null if no organism has been
+    /// selected.
+    const SelectedOrganism* selected_organism() const { return selected_organism_ ? &*selected_organism_ : nullptr; }
     /// Returns whether densities are shown because the visible organisms are too small and too many.
     bool shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const;
 
   private:
     static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often
-    static constexpr std::chrono::milliseconds brain_interval{40}; // for the activations of the selected organism
 
     /// The place (world and island) and the run that are shown. When one changes, all older data are cleared.
     struct Shown {
@@ -135,7 +120,6 @@ class IslandView {
                        const Camera& camera);
     void take_population();
     void request_organism(ViewedWorld& world, Clock::time_point now);
-    void request_parents(ViewedWorld& world, Clock::time_point now);
     void keep_selection(ViewedWorld& world);
     void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
@@ -147,12 +131,10 @@ class IslandView {
     GeneGroups gene_groups_;
     PopulationPoll population_poll_{poll_interval};
     Poll organism_poll_{poll_interval};
-    Poll parents_poll_;
-    bool awaits_parents_ = false;
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
     Trails trails_;
     Flashes flashes_;
-    std::optional<OrganismHistory> organism_history_;
+    std::optional<SelectedOrganism> selected_organism_;
 
     struct Followed {
         std::uint32_t id = 0;
@@ -164,7 +146,8 @@ class IslandView {
     /// The selection. It is restored when its generation is on the screen again, for example after a seek.
     struct Kept {
         std::string run_id;
-        OrganismPlace organism;
+        std::uint32_t island = 0, organism = 0; // every generation uses the same ids
+        std::uint64_t generation = 0;
         bool followed = false;
         bool out_of_sight = false; // another generation, island or world is shown
     };

@@ -81,8 +81,8 @@ std::optional<std::uint64_t> build_fitness_curve(std::span<const Generation> gen
     }
     const Generation& newest = generations.back();
     float x = write(list, gui.label(), title, palette::text, "Fitness, generation " + with_separators(newest.number));
-    for (const auto& [name, value, colour] : {std::tuple{" best ", newest.best, palette::series_orange},
-                                              {" mean ", newest.mean, palette::series_blue}}) {
+    for (const auto& [name, value, colour] :
+         {std::tuple{" best ", newest.best, palette::series_orange}, {" mean ", newest.mean, palette::series_blue}}) {
         const float y = title.y + gui.label().FontSize / 2;
         list.AddLine({x + 10 * scale, y}, {x + 24 * scale, y}, ink(colour), 2 * scale);
         x = write(list, gui.label(), {x + 24 * scale, title.y}, palette::text, name + significant(value));

@@ -18,32 +18,42 @@ constexpr std::string_view glass_box_widgets[] = {
 };
 constexpr std::string_view family_widgets[] = {"tree", "tree of generation ", "colour the island by lineage, too"};
 constexpr std::string_view plots_widgets[] = {
-    "running mean", "compare", "compare: ", "gene",        "group",       "living only",
-    "Save CSV",     "Save PNG", "image width", "image height", "path of another CSV file",
+    "running mean",
+    "compare",
+    "compare: ",
+    "gene",
+    "group",
+    "living only",
+    "Save CSV",
+    "Save PNG",
+    "image width",
+    "image height",
+    "path of another CSV file",
 };
 
 constexpr std::string_view physics_widgets[] = {
-    "Bodies of this island", "Effect of the tick length", "a spring", "damped motion", "tick, ms", "use the tick of this world",
+    "Bodies of this island",      "Effect of the tick length", "a spring", "damped motion", "tick, ms",
+    "use the tick of this world",
 };
+
+constexpr std::string_view organism_widgets[] = {"Network", "Go to parent "};
 
 struct PagePanel {
     std::string_view tab;
-    unsigned function_key;
+    unsigned function_key; // of evoview; 0: evoview has this panel, too, without these widgets
     std::span<const std::string_view> widgets;
 };
 constexpr PagePanel page_panels[] = {
-    {"Glass box", 8, glass_box_widgets},
-    {"Family tree", 11, family_widgets},
-    {"Plots", 7, plots_widgets},
-    {"Physics", 9, physics_widgets},
+    {"Glass box", 8, glass_box_widgets}, {"Family tree", 11, family_widgets}, {"Plots", 7, plots_widgets},
+    {"Physics", 9, physics_widgets},     {"Organism", 0, organism_widgets},
 };
 
 bool has(const PagePanel& panel, std::string_view widget) {
     constexpr std::string_view tabs = "Tabs/";
     widget.remove_prefix(widget.starts_with(tabs) ? tabs.size() : 0);
-    const bool in_panel =
+    const bool named =
         widget == panel.tab || (widget.starts_with(panel.tab) && widget.substr(panel.tab.size()).starts_with('/'));
-    return in_panel || std::ranges::any_of(panel.widgets, [&](std::string_view name) {
+    return (named && panel.function_key != 0) || std::ranges::any_of(panel.widgets, [&](std::string_view name) {
                return name.ends_with(' ') ? widget.starts_with(name) : widget == name;
            });
 }

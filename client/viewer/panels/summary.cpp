@@ -209,7 +209,7 @@ void Summary::build_speed(ViewedWorld& world) {
 
 void Summary::build_tools(const Panel::Context& context) {
     MouseTool& tool = *context.tool;
-    const OrganismHistory* selected = context.island_view.organism_history();
+    const SelectedOrganism* selected = context.island_view.selected_organism();
     const bool copies = context.world.feed.selected() && selected != nullptr && selected->info();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("Click");

@@ -33,7 +33,6 @@ void ReplayControl::open(evod::v1::RunMoment at) {
     if (info() != nullptr || opening()) {
         return;
     }
-    birth_.reset();
     open_refusal_.reset();
     evod::v1::Request request;
     request.mutable_open_replay()->set_world(feed_.world());
@@ -49,7 +48,6 @@ void ReplayControl::take_opened() {
     const auto response = opening_.get();
     const bool at_start = std::exchange(opening_at_start_, false);
     if (!server_.report_if_refused(response)) {
-        birth_.reset();
         if (at_start) {
             open_refusal_ = refusal_of(response);
         }
@@ -57,9 +55,7 @@ void ReplayControl::take_opened() {
         close(response->world().name());
     } else {
         const evod::v1::WorldInfo& world = response->world();
-        const std::optional<Birth> birth = birth_;
         show(world.name());
-        birth_ = birth;
         present_ = world.replay().replay_of();
         feed_.take_info(world);
         evod::v1::SubscribeEvents subscription;
@@ -80,7 +76,6 @@ void ReplayControl::leave(const std::string& next_world) {
         forked_.clear();
     }
     seeks_.clear();
-    birth_.reset();
     open_refusal_.reset();
     if (present_) {
         server_.connection().unsubscribe(own_events_);
@@ -106,7 +101,6 @@ void ReplayControl::update(WorldFeed::Clock::time_point now) {
         range_requested_ = now;
         feed_.request_statistics();
     }
-    select_newborn();
 }
 
 void ReplayControl::apply(const evod::v1::Event& event) {
@@ -125,7 +119,6 @@ bool ReplayControl::at_end() const {
 // ---- seeking ---------------------------------------------------------------------------------------------------
 
 void ReplayControl::seek(evod::v1::RunMoment to) {
-    birth_.reset();
     if (info() == nullptr) {
         return;
     }
@@ -167,32 +160,6 @@ void ReplayControl::seek_generations(int by) {
     moment.set_generation(
         std::clamp(static_cast<std::uint64_t>(to), info()->first_generation(), info()->last_generation()));
     seek(std::move(moment));
-}
-
-void ReplayControl::show_birth(std::uint64_t generation, std::uint32_t organism) {
-    if (opening()) {
-        return;
-    }
-    evod::v1::RunMoment at;
-    at.set_generation(generation);
-    if (info() != nullptr) {
-        seek(std::move(at));
-    } else {
-        open(std::move(at));
-    }
-    if (opening() || target() != nullptr) {
-        birth_ = {generation, organism};
-    }
-}
-
-/// Selects the organism of show_birth() when the first snapshot of its generation has arrived.
-void ReplayControl::select_newborn() {
-    const codec::ReceivedSnapshot* snapshot = feed_.snapshot();
-    if (birth_ && info() != nullptr && !opening() && snapshot != nullptr &&
-        snapshot->about.generation() == birth_->generation) {
-        feed_.select(birth_->organism);
-        birth_.reset();
-    }
 }
 
 // ---- forking ---------------------------------------------------------------------------------------------------

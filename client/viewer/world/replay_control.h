@@ -38,10 +38,6 @@ class ReplayControl {
     /// Seeks to the first tick of the generation that is `by` after the shown one, or after the target generation of a
     /// running seek.
     void seek_generations(int by);
-    /// Shows the first tick of a generation, in a replay, and selects an organism of the viewed island as soon as this
-    /// generation is shown. Opens a replay if a live world is viewed.
-    void show_birth(std::uint64_t generation, std::uint32_t organism);
-
     /// Returns the tick range of the viewed replay, whether it was opened here or is served from a run file; null for a
     /// live world.
     const evod::v1::Replay* info() const { return feed_.replay(); }
@@ -82,17 +78,11 @@ class ReplayControl {
     void send_fork(const std::string& name);
     void send_seek(std::optional<evod::v1::RunMoment> to);
     void take_opened();
-    void select_newborn();
     void close(const std::string& world);
 
     ServerConnection& server_;
     WorldFeed& feed_;
     SeekQueue seeks_;
-    struct Birth {
-        std::uint64_t generation = 0;
-        std::uint32_t organism = 0;
-    };
-    std::optional<Birth> birth_;          // the organism to select when its generation is shown
     std::optional<std::string> present_;  // the live world, while its replay is shown
     core::SubscriptionHandle own_events_; // events of the replay, which a subscription to all worlds does not include
     std::future<core::Result<evod::v1::Response>> opening_; // the pending answer to OpenReplay

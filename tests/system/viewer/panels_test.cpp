@@ -57,27 +57,6 @@ evod::v1::Response ask(RealServer& server, const evod::v1::Request& request) {
     return response;
 }
 
-TEST_F(PanelsTest, LeadsFromAnOrganismToItsParent) {
-    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
-    server.run_generations("", 3);
-    evod::v1::OrganismInfo healthiest;
-    for (std::uint32_t id = 0; id < 50; ++id) {
-        evod::v1::Request request;
-        request.mutable_get_organism()->set_organism(id);
-        const auto response = ask(server, request);
-        if (response.organism().health() > healthiest.health()) {
-            healthiest = response.organism();
-        }
-    }
-    ASSERT_FALSE(healthiest.parents().empty());
-    const Ran ran =
-        play(server.address(), "wait snapshot\nkey F6\nclick \"Organism " + std::to_string(healthiest.id()) +
-                                   "\"\nclick \"Go to parent " + std::to_string(healthiest.parents(0)) +
-                                   "\"\nwait widget \"Back to live\"\nkey P\n"
-                                   "wait gone \"Back to live\"\nquit\n");
-    EXPECT_EQ(ran.status, 0) << ran.output;
-}
-
 TEST_F(PanelsTest, WhatOnlyThePageHasLeadsToThePage) {
     RealServer with_page{{"--seed", "7", "--web", "--http-port", "0"}}, without{{"--seed", "7"}};
     for (const std::string line : {"key F8", "click \"Glass box/Play\"", "wait widget \"hold the world\""}) {

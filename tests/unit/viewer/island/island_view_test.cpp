@@ -236,26 +236,10 @@ TEST_F(IslandViewTest, ReportsAnInvalidAnswer) {
     EXPECT_THAT(island_view.problem(), HasSubstr("population.genes has 0 bytes, not 24"));
 }
 
-TEST_F(IslandViewTest, OpensAReplayToShowAParentAndSelectsIt) {
-    show(4, 100);
-    island_view.go_to(*world, {.island = 1, .generation = 3, .id = 2});
-    const auto request = next_request();
-    ASSERT_TRUE(request.has_open_replay()) << request.DebugString();
-    EXPECT_EQ(request.open_replay().world(), "default");
-    EXPECT_EQ(request.open_replay().at().generation(), 3u);
-    show(4, 101);
-    EXPECT_EQ(world->feed.selected(), std::nullopt) << "the ids of generation 4 belong to other organisms";
-    session->refuse(request.request_id(), evod::v1::CODE_RESOURCE_EXHAUSTED, "no more replays");
-    show_replay(); // in another way
-    show(3, 60, "\xaa", 8, 3, "default@3");
-    EXPECT_EQ(world->feed.selected(), 2u);
-    EXPECT_TRUE(island_view.following());
-}
-
 TEST_F(IslandViewTest, TheSelectionReturnsWithItsGeneration) {
     show(4, 100);
     world->feed.select(2);
-    until([&] { return island_view.organism_history() != nullptr; });
+    until([&] { return island_view.selected_organism() != nullptr; });
     island_view.toggle_following(*world);
     until([&] { return island_view.following(); });
     show(5, 200);
@@ -291,18 +275,10 @@ TEST_F(IslandViewTest, DeselectsTheOrganismWhenItsGenerationEnds) {
         }
         session->send(message);
     }
-    until([&] { return island_view.organism_history()->dead() && !island_view.organism_history()->ranges().empty(); });
-    EXPECT_EQ(island_view.organism_history()->health().back().health, 70);
+    until(
+        [&] { return island_view.selected_organism()->dead() && !island_view.selected_organism()->ranges().empty(); });
     show(5, 200);
     EXPECT_EQ(world->feed.selected(), std::nullopt);
-    const auto request = next_request();
-    ASSERT_TRUE(request.has_get_population());
-    evod::v1::ServerMessage message; // parents by page_of: of 0, 1 and 2; of 1, 2 and 3
-    message.mutable_response()->set_request_id(request.request_id());
-    *message.mutable_response()->mutable_population() = page_of(0, 3, 3, 5);
-    session->send(message);
-    until([&] { return island_view.organism_history()->children().has_value(); });
-    EXPECT_EQ(island_view.organism_history()->children()->size(), 2u);
 }
 
 TEST_F(IslandViewTest, FollowsTheSelectedOrganismUntilTheCameraIsMoved) {
@@ -336,10 +312,10 @@ TEST_F(IslandViewTest, ForgetsEverythingWithAnotherRun) {
     show(4, 100);
     island_view.options.colour_by = ColourBy::Gene;
     world->feed.select(2);
-    until([&] { return island_view.organism_history() != nullptr; });
+    until([&] { return island_view.selected_organism() != nullptr; });
     show(1, 5, "b");
     EXPECT_EQ(world->feed.selected(), std::nullopt);
-    EXPECT_EQ(island_view.organism_history(), nullptr);
+    EXPECT_EQ(island_view.selected_organism(), nullptr);
     EXPECT_TRUE(island_view.gene_names().empty());
     EXPECT_EQ(island_view.options.colour_by, ColourBy::Gene) << "the options are kept";
 }

@@ -19,6 +19,8 @@ TEST(PagePanels, AreFoundByTheirWidgets) {
     EXPECT_EQ(page_panel_with("Tabs/Plots"), "Plots");
     EXPECT_EQ(page_panel_with("compare: world second"), "Plots");
     EXPECT_EQ(page_panel_with("tree of generation 4"), "Family tree");
+    EXPECT_EQ(page_panel_with("Go to parent 12"), "Organism");
+    EXPECT_EQ(page_panel_with("Organism/keep it centred (L)"), "") << "evoview has it, too";
     for (const char* widget : {"Play", "left/generation", "Glass boxes", "Step ticks", "Parameters/Apply", ""}) {
         EXPECT_EQ(page_panel_with(widget), "") << widget;
     }
