@@ -12,8 +12,8 @@
 // the time of tick 0; the benchmark uses the least of many. A frame is on the screen when display() has returned.
 #include "client/core/connection.h"
 #include "client/viewer/panels/parameters_panel.h"
-#include "client/viewer/panes/pane.h"
 #include "client/viewer/shell/screen.h"
+#include "client/viewer/view/world_view.h"
 #include "tests/system/viewer/support/processes.h"
 
 #include <algorithm>
@@ -66,14 +66,14 @@ class Viewer {
         options_.connection.server = core::parse_endpoint(server).value();
         options_.world = world;
         screen_.emplace(options_);
-        panes_.emplace(wanted_of(options_));
+        view_.emplace(wanted_of(options_));
     }
 
     /// Connects again, as at the start of evoview. Returns when the connection was begun.
     Clock::time_point connect() {
-        panes_.reset();
+        view_.reset();
         const auto begun = Clock::now();
-        panes_.emplace(wanted_of(options_));
+        view_.emplace(wanted_of(options_));
         return begun;
     }
 
@@ -84,10 +84,10 @@ class Viewer {
         const auto now = Clock::now();
         for (sf::Event event; screen_->poll(event);) {
         }
-        panes_->update(now);
+        view_->world.update(now);
         WindowRenderer::Frame next = screen_->frame(now);
         next.interpolate = true;
-        screen_->renderer().draw(*panes_, next);
+        screen_->renderer().draw(*view_, next);
         screen_->window().display();
         const auto shown = Clock::now();
         if (meanwhile) {
@@ -110,7 +110,7 @@ class Viewer {
         throw std::runtime_error{"it never came to that"};
     }
 
-    ViewedWorld& world() { return panes_->focused().world; }
+    ViewedWorld& world() { return view_->world; }
     std::uint64_t tick() { return world().feed.snapshot() != nullptr ? world().feed.snapshot()->about.tick() : 0; }
     WindowRenderer& renderer() { return screen_->renderer(); }
 
@@ -139,7 +139,7 @@ class Viewer {
   private:
     Options options_;
     std::optional<Screen> screen_;
-    std::optional<Panes> panes_;
+    std::optional<WorldView> view_;
     std::minstd_rand chance_{1};
 };
 

@@ -66,17 +66,6 @@ void Camera::zoom_at(Point screen, double factor) {
     fitted_ = false;
 }
 
-void Camera::follow(const Camera& other) {
-    if (other.fitted_) {
-        fit();
-        return;
-    }
-    centre_ = other.centre_;
-    zoom_ = std::clamp(other.zoom_, zoom_min(), zoom_max);
-    stay_on_island();
-    fitted_ = false;
-}
-
 Point Camera::to_screen(Point world) const {
     const Point middle = viewport_.centre();
     return {middle.x + (world.x - centre_.x) * zoom_, middle.y + (world.y - centre_.y) * zoom_};

@@ -4,7 +4,7 @@
 // unit of length. Screen coordinates are in pixels of the window. The viewport is the part of the window in which the
 // island is drawn; the strips with texts are outside the viewport.
 //
-// Owner        a pane of the stage.
+// Owner        WorldView.
 // Threads      none; used on the drawing thread.
 #pragma once
 
@@ -51,9 +51,6 @@ class Camera {
     /// Multiplies the zoom by `factor`, clamped to zoom_min() to zoom_max. The world point under `screen` does not
     /// move.
     void zoom_at(Point screen, double factor);
-
-    /// Copies the centre and the zoom of `other`. If `other` shows its whole island, shows this whole island instead.
-    void follow(const Camera& other);
 
     Point to_screen(Point world) const;
     Point to_world(Point screen) const;

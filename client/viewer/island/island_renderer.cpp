@@ -54,13 +54,7 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count, double
            static_cast<double>(visible_count) * label_area <= covered_max * viewport_area;
 }
 
-namespace {
-
-/// Returns the circle at a point of the screen, as organism_at() does.
-///
-/// radius_px  a function that returns the radius of a circle, by its index
-template <class Radius>
-std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Radius radius_px, const Camera& camera) {
+std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
     if (!camera.viewport().contains(screen)) {
         return std::nullopt;
     }
@@ -68,10 +62,10 @@ std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Rad
     const double pixel = camera.scale() / camera.zoom(), target_min = 12 * pixel, slack = 3 * pixel;
     std::optional<std::size_t> found;
     bool found_inside = false;
-    double nearest = 0; // distance to the found circle: to its centre if it contains the point, otherwise to its edge
-    for (std::size_t i = 0, size = circles.size(); i < size; ++i) {
-        const auto [x_px, y_px] = circles[i];
-        const double radius = radius_px(i);
+    double nearest = 0; // distance to the found one: to its centre if it contains the point, otherwise to its edge
+    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
+        const auto [x_px, y_px] = organisms[i];
+        const double radius = static_cast<double>(organisms.entities->radius_px(i));
         const double x = x_px - world.x, y = y_px - world.y, reach = std::max(radius + slack, target_min);
         if (x * x + y * y > reach * reach) {
             continue;
@@ -86,18 +80,6 @@ std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Rad
         }
     }
     return found;
-}
-
-} // namespace
-
-std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
-    return circle_at(
-        screen, organisms, [&](std::size_t i) { return organisms.entities->radius_px(i); }, camera);
-}
-
-std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, double radius_px, const Camera& camera) {
-    return circle_at(
-        screen, {.entities = &items}, [&](std::size_t) { return radius_px; }, camera);
 }
 
 namespace {

@@ -45,12 +45,6 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count, double
 /// returns  an index in `organisms`; nullopt: no organism is there
 std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera);
 
-/// Returns the item at a point of the screen, in the same way as organism_at().
-///
-/// items      the food or the poison of a snapshot
-/// radius_px  of every item
-std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, double radius_px, const Camera& camera);
-
 class IslandRenderer {
   public:
     /// The highlighted organisms, by their index in the snapshot.

@@ -1,7 +1,7 @@
-// IslandView: how a pane shows its chosen island: the view options, the data that these options need from the server,
+// IslandView: how the chosen island is shown: the view options, the data that these options need from the server,
 // the selected and followed organism, and the region that is streamed.
 //
-// Owner        Pane.
+// Owner        WorldView.
 // Threads      none; used by the thread that draws.
 #pragma once
 

@@ -2,7 +2,6 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/world/freezer.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
@@ -76,18 +75,6 @@ std::string shown_choice(const evod::v1::OrganismInfo& info) {
     }
 }
 
-void OrganismPanel::build_freeze(Context& context, const SelectedOrganism& organism) {
-    if (widgets::button("Freeze")) {
-        const std::string name = context.world.feed.name() + "-g" + std::to_string(organism.generation()) + "-o" +
-                                 std::to_string(organism.id());
-        const auto& genes = organism.info()->genes();
-        const auto saved =
-            context.freezer->save(name, {context.world.feed.gene_names(), {{genes.begin(), genes.end()}}});
-        context.world.server.notice(saved ? "Stored the organism in the freezer as " + *saved : saved.error().what);
-    }
-    widgets::explain("Stores the organism's genes in the panel Freezer (F10), to place it in any world later.");
-}
-
 void OrganismPanel::build(Context& context) {
     const SelectedOrganism* organism = context.island_view.selected_organism();
     if (organism == nullptr) {
@@ -143,7 +130,6 @@ void OrganismPanel::build_life(Context& context, const SelectedOrganism& organis
             context.island_view.toggle_following(context.world);
         }
     }
-    build_freeze(context, organism);
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
 }

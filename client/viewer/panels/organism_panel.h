@@ -21,7 +21,6 @@ class OrganismPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    void build_freeze(Context& context, const SelectedOrganism& organism);
     void build_choice(Context& context);
     void build_life(Context& context, const SelectedOrganism& organism);
     void build_genes(Context& context, const SelectedOrganism& organism);

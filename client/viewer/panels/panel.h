@@ -1,4 +1,4 @@
-// Panel: a group of widgets in the sidebar, or in a window of its own. It sends queries and commands only through the
+// Panel: a group of widgets in the sidebar. It sends queries and commands only through the
 // ViewedWorld, which uses the public protocol.
 //
 // Owner        Panels.
@@ -16,10 +16,6 @@
 
 namespace evod::viewer {
 
-class Freezer;
-class MouseTool;
-class NewWorldDialog;
-
 class Panel {
   public:
     struct Context {
@@ -27,17 +23,9 @@ class Panel {
         const Gui& gui;
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
-        // Panels sets the following members.
-        Freezer* freezer = nullptr;
-        NewWorldDialog* new_world = nullptr;
-        MouseTool* tool = nullptr;
-        /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
+        /// Whether this is the first frame after the panel was hidden; set by Panels. A hidden panel receives no events.
         bool just_shown = false;
     };
-    struct Size {
-        float width, height; // in pixels at scale 1
-    };
-
     /// A key that the panel handles while it has the keyboard focus, and the text that explains it in the help.
     struct Key {
         sf::Keyboard::Key key;
@@ -47,11 +35,8 @@ class Panel {
 
     virtual ~Panel() = default;
 
-    /// The title of the window and of its section in the help: "Parameters".
+    /// The title of the tab and of its section in the help: "Parameters".
     virtual std::string_view title() const = 0;
-
-    /// The size of the panel's own window until the user changes it.
-    virtual Size first_size() const { return {400, 480}; }
 
     /// The keys that the panel handles. While the panel has the focus, all other keys still go to the main window.
     virtual std::span<const Key> keys() const { return {}; }

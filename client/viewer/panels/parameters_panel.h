@@ -21,7 +21,6 @@ namespace evod::viewer {
 class ParametersPanel : public Panel {
   public:
     std::string_view title() const override { return "Parameters"; }
-    Size first_size() const override { return {560, 600}; }
     std::span<const Key> keys() const override;
     void build(Context& context) override;
 

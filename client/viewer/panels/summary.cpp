@@ -5,29 +5,17 @@
 #include "client/viewer/island/island_renderer.h"
 #include "client/viewer/island/styles.h"
 #include "client/viewer/panels/fitness_curve.h"
-#include "client/viewer/panels/new_world_dialog.h"
-#include "client/viewer/world/mouse_tool.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 
 namespace evod::viewer {
 
 namespace {
 
 constexpr float text_lines = 5; // room for the sentences, so that the widgets below them stay in place
-
-/// What a click in an island does, by MouseTool::Kind.
-constexpr std::array<std::string_view, MouseTool::names.size()> explanations{
-    "A click in the island selects the organism there (Esc).",
-    "A click in the island places food. It does not reappear when it is eaten.",
-    "A click in the island places poison. It does not reappear when it is eaten.",
-    "A click in the island places a copy of the selected organism, or of the last organism from the freezer.",
-    "A click in the island removes the organism, food or poison there until the generation ends.",
-};
 
 } // namespace
 
@@ -53,7 +41,6 @@ void Summary::build(Panel::Context& context, bool complete) {
     }
     build_buttons(context);
     build_speed(context.world);
-    build_tools(context);
 }
 
 void Summary::build_experiment(Panel::Context& context) {
@@ -145,16 +132,8 @@ void Summary::build_buttons(Panel::Context& context) {
         world.replay.fork();
     }
     ImGui::EndDisabled();
-    widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it beside this one."
-                                : no_creation_text);
+    widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it." : no_creation_text);
     ImGui::EndDisabled();
-    ImGui::SameLine();
-    ImGui::BeginDisabled(!may_create);
-    if (widgets::button("New …")) {
-        context.new_world->open(false);
-    }
-    ImGui::EndDisabled();
-    widgets::explain(may_create ? new_world_text : no_creation_text);
     if (!why.empty()) {
         widgets::small_text(why, palette::stopped);
     }
@@ -204,36 +183,6 @@ void Summary::build_speed(ViewedWorld& world) {
     }
     if (control.info().slowed()) {
         widgets::small_text("The server cannot keep up: simulated time runs slower, no tick is skipped.");
-    }
-}
-
-void Summary::build_tools(const Panel::Context& context) {
-    MouseTool& tool = *context.tool;
-    const SelectedOrganism* selected = context.island_view.selected_organism();
-    const bool copies = context.world.feed.selected() && selected != nullptr && selected->info();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("Click");
-    for (std::size_t i = 0; i < MouseTool::names.size(); ++i) {
-        const auto kind = static_cast<MouseTool::Kind>(i);
-        const bool chosen = tool.kind() == kind, takes_copy = copies && kind == MouseTool::Kind::Organism;
-        const std::string problem = takes_copy && !tool.model() ? tool.problem(MouseTool::Kind::Food, context.world)
-                                                                : tool.problem(kind, context.world);
-        ImGui::SameLine(0, 4 * context.gui.scale());
-        ImGui::BeginDisabled(!problem.empty());
-        ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
-        ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
-        const bool pressed = ImGui::Button(MouseTool::names[i].data());
-        widgets::mark("Click: " + std::string{MouseTool::names[i]}); // the panel Organism has a tab with this label
-        if (pressed) {
-            if (takes_copy) {
-                const auto& genes = selected->info()->genes();
-                tool.place({"a copy of organism " + std::to_string(selected->id()), {genes.begin(), genes.end()}});
-            }
-            tool.choose(kind);
-        }
-        ImGui::PopStyleColor(2);
-        ImGui::EndDisabled();
-        widgets::explain(problem.empty() ? explanations[i] : problem);
     }
 }
 

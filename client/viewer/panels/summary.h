@@ -1,7 +1,6 @@
 // Summary: the top of the sidebar. It explains the focused world to a newcomer and controls its run.
 //
-//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls ·
-//   what a click in the island does
+//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -31,7 +30,6 @@ class Summary {
     void build_marks(const Panel::Context& context);
     void build_buttons(Panel::Context& context);
     void build_speed(ViewedWorld& world);
-    void build_tools(const Panel::Context& context);
 
     Experiment experiment_;
     FitnessHistory history_;

@@ -1,6 +1,6 @@
 #include "client/viewer/world/replay_control.h"
 
-#include "client/viewer/world/new_world.h"
+#include "client/viewer/world/world_names.h"
 
 #include <algorithm>
 #include <chrono>
@@ -71,10 +71,7 @@ void ReplayControl::close(const std::string& world) {
     server_.connection().send(std::move(request));
 }
 
-void ReplayControl::leave(const std::string& next_world) {
-    if (next_world != present_) {
-        forked_.clear();
-    }
+void ReplayControl::leave() {
     seeks_.clear();
     open_refusal_.reset();
     if (present_) {
@@ -85,7 +82,7 @@ void ReplayControl::leave(const std::string& next_world) {
 }
 
 void ReplayControl::show(std::string world) {
-    leave(world);
+    leave();
     feed_.show(std::move(world), feed_.island());
 }
 
@@ -100,12 +97,6 @@ void ReplayControl::update(WorldFeed::Clock::time_point now) {
     if (present_ && now - range_requested_ > range_interval) {
         range_requested_ = now;
         feed_.request_statistics();
-    }
-}
-
-void ReplayControl::apply(const evod::v1::Event& event) {
-    if (event.has_world_deleted() && event.world() == forked_) {
-        forked_.clear();
     }
 }
 
@@ -191,7 +182,7 @@ void ReplayControl::send_fork(const std::string& name) {
     request.mutable_fork_world()->set_name(name);
     server_.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
         if (server_.report_if_refused(response)) {
-            forked_ = new_fork_ = name;
+            new_fork_ = name;
             server_.notice("Forked the world " + name + " from this moment");
         }
     });

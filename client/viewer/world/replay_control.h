@@ -55,9 +55,6 @@ class ReplayControl {
     void fork();
     /// Returns the name of the fork that the server has created, once; empty if there is no new one.
     std::string take_new_fork() { return std::exchange(new_fork_, {}); }
-    /// Returns the newest world forked from the viewed world, its replay or its live world. Empty if there is none or
-    /// it has been deleted.
-    const std::string& forked() const { return forked_; }
 
     // ViewedWorld calls the following functions.
 
@@ -67,11 +64,10 @@ class ReplayControl {
     /// problem.
     const std::optional<std::string>& open_refusal() const { return open_refusal_; }
     /// Clears all data about the viewed world and closes its replay. Call before another world is shown.
-    void leave(const std::string& next_world);
+    void leave();
     /// Shows the replay once the server has opened it. Requests its tick range once a second, because it grows with the
     /// live world.
     void update(WorldFeed::Clock::time_point now);
-    void apply(const evod::v1::Event& event);
 
   private:
     void show(std::string world);
@@ -90,7 +86,7 @@ class ReplayControl {
     bool opening_at_start_;                                 // the pending replay was requested at the start of evoview
     std::optional<std::string> open_refusal_;
     WorldFeed::Clock::time_point range_requested_{};
-    std::string forked_, new_fork_;
+    std::string new_fork_;
 };
 
 } // namespace evod::viewer

@@ -127,23 +127,6 @@ TEST(Camera, CentresOnAPointOfTheIsland) {
     EXPECT_EQ(camera.centre(), (Point{0, 500}));
 }
 
-TEST(Camera, FollowsAnotherCameraInItsOwnViewport) {
-    Camera leader, other;
-    leader.set_viewport({0, 0, 600, 400});
-    other.set_viewport({602, 0, 600, 400});
-    leader.set_island(1000, 500);
-    other.set_island(1000, 500);
-    leader.zoom_at({150, 100}, 3);
-    other.follow(leader);
-    EXPECT_EQ(other.zoom(), leader.zoom());
-    EXPECT_EQ(other.centre(), leader.centre());
-    EXPECT_EQ(other.viewport().left, 602);
-    EXPECT_FALSE(other.fitted());
-    leader.fit();
-    other.follow(leader);
-    EXPECT_TRUE(other.fitted());
-}
-
 TEST(CameraScale, WallsAndMarginsGrowWithTheScale) {
     Camera camera;
     camera.set_viewport({0, 0, 1000, 500}, 2);

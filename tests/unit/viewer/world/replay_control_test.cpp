@@ -148,27 +148,8 @@ TEST_F(ReplayControlTest, ForksFromTheShownMoment) {
     EXPECT_EQ(fork.fork_world().name(), "default-3") << "the live world's name with a number that is free";
     EXPECT_FALSE(fork.fork_world().has_at_generation());
     answer_with(session, fork, info("default-3", evod::v1::RUN_STATE_WAITING));
-    until(world, [&] { return world.replay.forked() == "default-3"; });
-    EXPECT_EQ(world.take_beside(), "default-3");
-    EXPECT_EQ(world.take_beside(), "") << "it is shown once";
-    world.replay.return_to_present();
-    EXPECT_EQ(world.replay.forked(), "default-3") << "the fork is still there";
-    world.show("elsewhere", 0);
-    EXPECT_EQ(world.replay.forked(), "");
-}
-
-TEST_F(ReplayControlTest, ForgetsADeletedFork) {
-    ViewedWorld world{wanted()};
-    auto session = open_replay(world);
-    fork(world, session);
-    until(world, [&] { return session.unread_bytes() > 0; });
-    answer_with(session, next(session), info("default-3", evod::v1::RUN_STATE_WAITING));
-    until(world, [&] { return world.replay.forked() == "default-3"; });
-    evod::v1::ServerMessage deleted;
-    deleted.mutable_event()->set_world("default-3");
-    deleted.mutable_event()->mutable_world_deleted()->mutable_by()->set_user("alice");
-    session.send(deleted);
-    until(world, [&] { return world.replay.forked().empty(); });
+    until(world, [&] { return world.feed.world() == "default-3"; });
+    EXPECT_FALSE(world.replay.is_own());
 }
 
 TEST_F(ReplayControlTest, AViewerMayCommandItsOwnReplay) {
