@@ -9,9 +9,6 @@
 #include "client/viewer/island/island_view.h"
 #include "client/viewer/world/viewed_world.h"
 
-#include <SFML/Window/Keyboard.hpp>
-
-#include <span>
 #include <string_view>
 
 namespace evod::viewer {
@@ -26,20 +23,10 @@ class Panel {
         /// Whether this is the first frame after the panel was hidden; set by Panels. A hidden panel receives no events.
         bool just_shown = false;
     };
-    /// A key that the panel handles while it has the keyboard focus, and the text that explains it in the help.
-    struct Key {
-        sf::Keyboard::Key key;
-        std::string_view help; // empty: this key has the same effect as the key before it
-        bool control = false, shift = false;
-    };
-
     virtual ~Panel() = default;
 
-    /// The title of the tab and of its section in the help: "Parameters".
+    /// The title of the tab: "Parameters".
     virtual std::string_view title() const = 0;
-
-    /// The keys that the panel handles. While the panel has the focus, all other keys still go to the main window.
-    virtual std::span<const Key> keys() const { return {}; }
 
     /// Builds the widgets. Called between ImGui::Begin() and ImGui::End(), only while the panel is shown.
     virtual void build(Context& context) = 0;

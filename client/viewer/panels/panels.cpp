@@ -66,19 +66,11 @@ void Panels::show(std::string_view title) {
     show(static_cast<std::size_t>(found - titles_.begin()));
 }
 
-bool Panels::handles(const sf::Event::KeyEvent& key) const {
-    return keyboard_ && shown(*keyboard_) && !key.alt && !key.system &&
-           std::ranges::any_of(keys_of(*keyboard_), [&](const Panel::Key& handled) {
-               return handled.key == key.code && handled.control == key.control && handled.shift == key.shift;
-           });
-}
-
 double Panels::width(unsigned window_pixels, double scale) const {
     return collapsed_ ? std::round(sidebar_collapsed * scale) : sidebar_pixels(window_pixels, scale);
 }
 
 void Panels::build(Panel::Context context, Rectangle sidebar) {
-    keyboard_.reset();
     if (collapsed_) {
         build_collapsed(sidebar, context.gui.scale());
     } else {
@@ -180,9 +172,6 @@ void Panels::build_panel(std::size_t index, Panel::Context& context) {
     place.panel->build(context);
     context.gui.widget_positions().begin_panel({});
     place.built = ImGui::GetFrameCount();
-    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows)) {
-        keyboard_ = index;
-    }
 }
 
 } // namespace evod::viewer

@@ -9,12 +9,9 @@
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/panels/summary.h"
 
-#include <SFML/Window/Event.hpp>
-
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,8 +29,6 @@ class Panels {
     void show(std::string_view title);
     bool shown(std::size_t index) const;
     void toggle_sidebar() { collapsed_ = !collapsed_; }
-    /// Whether the panel with the keyboard focus handles this key. If not, the key goes to the main window.
-    bool handles(const sf::Event::KeyEvent& key) const;
 
     /// The panel with this function key, such as 4 for F4; nullopt: none.
     std::optional<std::size_t> panel_at(unsigned function_key) const;
@@ -41,7 +36,6 @@ class Panels {
     std::string key_of(std::size_t index) const { return "F" + std::to_string(places_[index].function_key); }
     /// The titles of all panels, in the order of their keys.
     const std::vector<std::string_view>& titles() const { return titles_; }
-    std::span<const Panel::Key> keys_of(std::size_t index) const { return places_[index].panel->keys(); }
 
     /// The width of the sidebar in pixels, in a window of this width.
     double width(unsigned window_pixels, double scale) const;
@@ -69,7 +63,6 @@ class Panels {
     std::vector<Place> places_;
     std::vector<std::string_view> titles_;
     Summary summary_;
-    std::optional<std::size_t> keyboard_; // index of the panel with the keyboard focus
 };
 
 } // namespace evod::viewer

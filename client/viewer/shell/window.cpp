@@ -63,7 +63,7 @@ void Window::run() {
 
 void Window::handle_events() {
     for (sf::Event event; screen_.poll(event);) {
-        const Captured captured = renderer_.captured(event);
+        const Captured captured = renderer_.gui().captured();
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
             const Point place{double(event.mouseButton.x), double(event.mouseButton.y)};
             view_.choose_island_at(place);

@@ -147,15 +147,6 @@ std::vector<HelpLine> help_lines(const Panels& panels) {
     for (std::size_t i = 0; i < panels.titles().size(); ++i) {
         lines.push_back({panels.key_of(i), "show the panel " + std::string{panels.titles()[i]}});
     }
-    for (std::size_t i = 0; i < panels.titles().size(); ++i) {
-        if (!panels.keys_of(i).empty()) {
-            lines.push_back({"", ""});
-            lines.push_back({"", "While " + std::string{panels.titles()[i]} + " has the keyboard:"});
-        }
-        for (const Panel::Key& key : panels.keys_of(i)) {
-            add(lines, stroke(name_of(key.key), key.control, key.shift), key.help);
-        }
-    }
     return lines;
 }
 

@@ -80,7 +80,7 @@ struct HelpLine {
 };
 /// The help on the keys of the window and on the mouse.
 std::vector<HelpLine> help_lines();
-/// The help on panels: the key that shows each panel, followed by the keys that this panel handles.
+/// The help on panels: the key that shows each panel.
 std::vector<HelpLine> help_lines(const Panels& panels);
 
 } // namespace evod::viewer

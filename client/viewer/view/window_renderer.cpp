@@ -45,12 +45,6 @@ void WindowRenderer::select(WorldView& view, std::optional<std::uint32_t> organi
     }
 }
 
-Captured WindowRenderer::captured(const sf::Event& event) const {
-    Captured captured = gui_.captured();
-    captured.keyboard |= event.type == sf::Event::KeyPressed && panels_.handles(event.key);
-    return captured;
-}
-
 void WindowRenderer::draw(WorldView& view, const Frame& frame) {
     const double sidebar = frame.interactive ? panels_.width(frame.width_pixels, gui_.scale()) : 0;
     const Rectangle place{0, 0, std::max(frame.width_pixels - sidebar, 1.0), double(frame.height_pixels)};

@@ -43,9 +43,6 @@ class WindowRenderer {
     /// image.
     sf::Image capture(WorldView& view, const Frame& frame);
 
-    /// Whether a widget or panel uses the event.
-    Captured captured(const sf::Event& event) const;
-
     Gui& gui() { return gui_; }
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }

@@ -18,7 +18,6 @@ using evod::v1::ParameterDescription;
 using evod::v1::ParameterValue;
 
 constexpr double decades_min = 100; // if max / min is above this ratio, the slider is logarithmic
-constexpr std::size_t transactions_kept = 100;
 
 constexpr std::size_t unit_length_max = 10; // longer units do not fit into a field
 
@@ -192,9 +191,7 @@ void ParameterEdits::forget() {
         states_[i].value = registry_[i].default_value();
     }
     revision_ = 0;
-    sent_ = {};
-    done_.clear();
-    undone_.clear();
+    sent_.clear();
     problem_.clear();
 }
 
@@ -285,73 +282,34 @@ std::size_t ParameterEdits::edit_count() const {
     return static_cast<std::size_t>(std::ranges::count_if(states_, [](const State& state) { return !!state.edit; }));
 }
 
-// ---- transactions ----------------------------------------------------------------------------------------------
+// ---- requests ----------------------------------------------------------------------------------------------
 
-std::optional<evod::v1::Request> ParameterEdits::send(const std::string& world, Kind kind,
-                                                      std::vector<Change> changes) {
+std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world) {
+    if (busy() || edit_count() == 0) {
+        return std::nullopt;
+    }
     evod::v1::Request request;
     evod::v1::SetParameters& set = *request.mutable_set_parameters();
     set.set_world(world);
     set.set_expected_revision(revision_);
-    for (const Change& change : changes) {
-        evod::v1::ParameterAssignment& assignment = *set.add_parameters();
-        assignment.set_name(registry_[change.parameter].name());
-        *assignment.mutable_value() = change.after;
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+        if (states_[i].edit) {
+            evod::v1::ParameterAssignment& assignment = *set.add_parameters();
+            assignment.set_name(registry_[i].name());
+            *assignment.mutable_value() = *states_[i].edit;
+            sent_.push_back({i, *states_[i].edit});
+        }
     }
-    sent_ = {kind, std::move(changes)};
     return request;
 }
 
-std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world) {
-    std::vector<Change> changes;
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-        if (states_[i].edit) {
-            changes.push_back({i, requested_value(i), *states_[i].edit});
-        }
-    }
-    return busy() || changes.empty() ? std::nullopt : send(world, Kind::Apply, std::move(changes));
-}
-
-std::optional<evod::v1::Request> ParameterEdits::send_reversed(const std::string& world, Kind kind,
-                                                               std::vector<std::vector<Change>>& from) {
-    while (!busy() && !from.empty()) {
-        std::vector<Change> changes;
-        for (const Change& change : from.back()) {
-            if (same(requested_value(change.parameter), change.after)) {
-                changes.push_back({change.parameter, change.after, change.before});
-            }
-        }
-        from.pop_back();
-        if (!changes.empty()) {
-            return send(world, kind, std::move(changes));
-        } // other clients have changed all these values since
-    }
-    return std::nullopt;
-}
-
-std::optional<evod::v1::Request> ParameterEdits::undo(const std::string& world) {
-    return send_reversed(world, Kind::Undo, done_);
-}
-
-std::optional<evod::v1::Request> ParameterEdits::redo(const std::string& world) {
-    return send_reversed(world, Kind::Redo, undone_);
-}
-
 void ParameterEdits::take_acceptance() {
-    for (const Change& change : sent_.changes) {
-        State& state = states_[change.parameter];
+    for (const Sent& sent : sent_) {
+        State& state = states_[sent.parameter];
         state.client_of_last_change.clear();
-        if (state.edit && same(*state.edit, change.after)) {
-            state.edit.reset(); // otherwise the user has edited the value again meanwhile
+        if (state.edit && same(*state.edit, sent.value)) {
+            state.edit.reset(); // otherwise the user has edited the value again before the answer
         }
-    }
-    if (sent_.kind == Kind::Apply) {
-        undone_.clear();
-    }
-    auto& kept = sent_.kind == Kind::Undo ? undone_ : done_;
-    kept.push_back(std::move(sent_.changes));
-    if (kept.size() > transactions_kept) {
-        kept.erase(kept.begin());
     }
 }
 
@@ -387,13 +345,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     } else {
         problem_ = "No answer arrived: the change may or may not have been applied";
     }
-    if (!done && sent_.kind != Kind::Apply) { // keep the transaction, so that the user can undo or redo it again
-        for (Change& change : sent_.changes) {
-            std::swap(change.before, change.after);
-        }
-        (sent_.kind == Kind::Undo ? done_ : undone_).push_back(std::move(sent_.changes));
-    }
-    sent_ = {};
+    sent_.clear();
     return !done;
 }
 

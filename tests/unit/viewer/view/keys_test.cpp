@@ -59,7 +59,6 @@ TEST(Keys, TheHelpListsTheKeysOfAnActionInOneLine) {
 TEST(Keys, TheHelpListsThePanelsAndTheirKeys) {
     const auto lines = help_lines(Panels{});
     EXPECT_THAT(lines, Contains(line("F2", "show the panel Worlds")));
-    EXPECT_THAT(lines, Contains(line("Ctrl+Y   Ctrl+Shift+Z", "redo the last undone change")));
 }
 
 } // namespace
