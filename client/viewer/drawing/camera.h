@@ -42,14 +42,14 @@ class Camera {
     void fit();
     bool fitted() const { return fitted_; }
 
-    /// Moves the drawn island by this many pixels. The centre of the viewport stays on the island.
+    /// Moves the drawn island by this many pixels. The viewport stays on the island.
     void pan(Point pixels);
 
-    /// Centres the viewport on a point of the world, clamped to the island.
+    /// Centres the viewport on a point of the world, as far as the viewport stays on the island.
     void look_at(Point world);
 
     /// Multiplies the zoom by `factor`, clamped to zoom_min() to zoom_max. The world point under `screen` does not
-    /// move.
+    /// move, as far as the viewport stays on the island.
     void zoom_at(Point screen, double factor);
 
     Point to_screen(Point world) const;

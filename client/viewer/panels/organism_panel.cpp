@@ -76,7 +76,7 @@ std::string shown_choice(const evod::v1::OrganismInfo& info) {
 }
 
 void OrganismPanel::build(Context& context) {
-    const SelectedOrganism* organism = context.island_view.selected_organism();
+    const SelectedOrganism* organism = context.island_data.selected_organism();
     if (organism == nullptr) {
         build_choice(context);
         return;
@@ -125,9 +125,9 @@ void OrganismPanel::build_life(Context& context, const SelectedOrganism& organis
     widgets::small_text(shown_fate(organism), palette::text);
     if (!organism.dead() && !organism.ended()) {
         widgets::small_text(shown_choice(info), palette::text);
-        bool following = context.island_view.following();
+        bool following = context.island_data.followed().has_value();
         if (widgets::checkbox("keep it centred (L)", following)) {
-            context.island_view.toggle_following(context.world);
+            context.island_data.toggle_following(context.world.feed);
         }
     }
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
@@ -137,7 +137,7 @@ void OrganismPanel::build_life(Context& context, const SelectedOrganism& organis
 void OrganismPanel::build_genes(Context& context, const SelectedOrganism& organism) {
     const evod::v1::OrganismInfo& info = *organism.info();
     const auto& names = context.island_view.gene_names();
-    const GeneRange weights = genes_of(context.island_view.gene_groups(), evod::v1::GENE_GROUP_BRAIN);
+    const GeneRange weights = genes_of(context.world.feed.gene_groups(), evod::v1::GENE_GROUP_BRAIN);
     for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {
         if (weights.contains(gene)) {
             continue; // they are too many

@@ -95,10 +95,10 @@ void ViewPanel::build(Context& context) {
     widgets::checkbox("density map where organisms are too many", island_view.options.density);
     widgets::checkbox("minimap while zoomed in", island_view.options.minimap);
     ImGui::Separator();
-    bool following = island_view.following();
+    bool following = context.island_data.followed().has_value();
     if (context.world.feed.selected() || following) {
         if (widgets::checkbox("keep the selected organism centred (L)", following)) {
-            island_view.toggle_following(context.world);
+            context.island_data.toggle_following(context.world.feed);
         }
     } else {
         widgets::small_text("Click an organism to select it.", palette::text);

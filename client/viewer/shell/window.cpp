@@ -166,7 +166,7 @@ void Window::carry_out(Action action) {
     case Action::Trails:
         return toggle(island_view.options.trails);
     case Action::Follow:
-        return island_view.toggle_following(world);
+        return view_.island_data.toggle_following(world.feed);
     case Action::Screenshot:
         return save_screenshot();
     case Action::CopyLink:

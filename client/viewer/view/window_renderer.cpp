@@ -66,7 +66,8 @@ void WindowRenderer::draw(WorldView& view, const Frame& frame) {
     gui_.widget_positions().begin_panel({});
     overlay_.build(gui_, panels_, view.place(), frame.now);
     if (frame.interactive) {
-        panels_.build({view.world, gui_, frame.now, view.island_view}, {place.width, 0, sidebar, place.height});
+        panels_.build({view.world, gui_, frame.now, view.island_view, view.island_data},
+                      {place.width, 0, sidebar, place.height});
     }
     gui_.draw();
 }
@@ -80,10 +81,10 @@ void WindowRenderer::draw_tile(WorldView& view, const Tile& tile, IslandRenderer
         highlighted.pointed_at = organism_at(*frame.pointed_at, tile.view.organisms_at(blend), tile.camera);
     }
     if (chosen) { // also before the first snapshot: the panels must not use the data of the island shown before
-        view.island_view.update(view.world, tile.camera, frame.now, highlighted.pointed_at.has_value());
+        view.update_island(frame.now, highlighted.pointed_at.has_value());
     }
     if (snapshot != nullptr && chosen) {
-        view.island_view.follow(view.world, tile.camera, blend);
+        view.island_view.follow(view.island_data, tile.view, tile.camera, blend);
         if (const auto selected = view.world.feed.selected()) {
             highlighted.selected = snapshot->entities->organisms.index_of(*selected);
         }

@@ -3,6 +3,7 @@
 #include "client/viewer/drawing/window_layout.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -39,6 +40,37 @@ void WorldView::lay_out(Rectangle place, bool with_timeline, double scale) {
     const std::vector<Rectangle> places = in_tiles(viewport_of(place_, scale), all.size(), aspect);
     for (std::size_t i = 0; i < all.size(); ++i) {
         all[i].camera.set_viewport(places[i], scale);
+    }
+}
+
+void WorldView::update_island(core::SnapshotInterpolator::Clock::time_point now, bool points_at) {
+    island_data.update(world, island_view.needs(points_at), now);
+    if (const auto& snapshot = world.feed.view().latest()) {
+        island_view.add(camera(), snapshot);
+        update_stream(now);
+    }
+}
+
+void WorldView::update_stream(core::SnapshotInterpolator::Clock::time_point now) {
+    const codec::ReceivedSnapshot& snapshot = *world.feed.snapshot();
+    const bool other_place = streamed_place_ != world.feed.place_number();
+    const bool other_run = streamed_run_ != snapshot.about.run_id();
+    if (other_place || other_run || world.feed.all_islands()) { // a view would restrict the snapshots of all islands
+        region_ = {};
+        in_part_ = false;
+    }
+    if (!other_place && other_run && !streamed_run_.empty()) { // the world was reset
+        world.feed.set_view(std::nullopt);
+    }
+    streamed_place_ = world.feed.place_number();
+    streamed_run_ = snapshot.about.run_id();
+    in_part_ = in_part_ || std::max(snapshot.about.organism_count(), snapshot.about.live().organism_count()) >=
+                               StreamedRegion::organisms_min;
+    if (!in_part_ || world.feed.all_islands()) {
+        return;
+    }
+    if (auto view = region_.update(camera(), island_view.detail(camera(), snapshot), now)) {
+        world.feed.set_view(std::move(view));
     }
 }
 

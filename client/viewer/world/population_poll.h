@@ -5,7 +5,7 @@
 // first page. Without this wait, a large population of a fast world would be requested continuously and use the
 // bandwidth of the snapshots.
 //
-// Owner        the panel or IslandView that shows the population.
+// Owner        IslandData.
 // Threads      none; used by the thread that draws.
 #pragma once
 

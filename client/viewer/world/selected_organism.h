@@ -1,7 +1,7 @@
 // SelectedOrganism: what was received about one organism since it was selected: the server's description, and the
 // ranges of the genes in its generation.
 //
-// Owner        IslandView.
+// Owner        IslandData.
 // Threads      none; used by the thread that draws.
 #pragma once
 

@@ -42,7 +42,7 @@ struct IslandViewTest : testing::Test {
         return draw();
     }
     sf::Image draw_with_population() {
-        return draw_when([&] { return island_view().population() != nullptr; });
+        return draw_when([&] { return view->island_data.population() != nullptr; });
     }
     ViewedWorld& world() { return view->world; }
     IslandView& island_view() { return view->island_view; }
