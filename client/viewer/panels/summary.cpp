@@ -20,9 +20,10 @@ constexpr float text_lines = 5; // room for the sentences, so that the widgets b
 } // namespace
 
 void Summary::build_title(const ViewedWorld& world) {
-    const evod::v1::Replay* replay = world.replay.info();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(replay != nullptr ? replay_label(*replay).c_str() : ("World " + world.feed.name()).c_str());
+    const codec::ReceivedSnapshot* snapshot = world.feed.snapshot();
+    ImGui::TextUnformatted(
+        shown_text(world.feed.name(), world.replay.info(), snapshot != nullptr ? &snapshot->about : nullptr).c_str());
     widgets::mark("World");
 }
 
@@ -153,8 +154,8 @@ void Summary::build_speed(ViewedWorld& world) {
     double factor = factor_.value_or(max ? 1 : speed.real_time_factor());
     const double least = RunControl::factor_min, most = RunControl::factor_max;
     ImGui::SetNextItemWidth(-rest);
-    if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &factor, &least, &most,
-                            factor < 1000 ? "%.3g × real time" : "%.0f × real time", ImGuiSliderFlags_Logarithmic)) {
+    if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &factor, &least, &most, speed_text(factor).c_str(),
+                            ImGuiSliderFlags_Logarithmic)) {
         factor_ = factor;
     }
     widgets::mark_field("speed", factor);

@@ -102,9 +102,12 @@ void Overlay::build_strips(const ViewedWorld& world, const Gui& gui, Rectangle p
     if (state_begin > title_end + margin) {
         write(list, text, {state_begin, top_line}, state_colour(world), state);
     }
-    const std::string where = world.server.connected() ? place_and_speed_text(snapshot->about, world.feed.control())
-                                                       : place_text(snapshot->about); // the speed is unknown
-    for (const std::string& about : {where, snapshot->about.world()}) {
+    // The label of a replay has the name of the live world.
+    const std::string name = world.replay.present().value_or(snapshot->about.world());
+    const std::string where = world.server.connected()
+                                  ? place_and_speed_text(name, snapshot->about, world.feed.control())
+                                  : place_text(name, snapshot->about); // the speed is unknown
+    for (const std::string& about : {where, name}) {
         const float about_begin = state_begin - 2 * margin - size_of(about, text).x;
         if (about_begin > title_end + margin) {
             write(list, text, {about_begin, top_line}, palette::text, about);
