@@ -55,8 +55,8 @@ class IslandView {
 
     /// Adds the newest snapshot to the trails and the flashes, unless it was added before.
     void add(const Camera& camera, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
-    /// Keeps the followed organism in the centre, as far as the camera stays on the island. Following ends when the user
-    /// moves the camera or selects another organism. If the organism is gone, shows the whole island.
+    /// Keeps the followed organism in the centre, as far as the camera stays on the island. Following ends when the
+    /// user moves the camera or selects another organism. If the organism is gone, shows the whole island.
     ///
     /// island  the snapshots of the chosen island
     void follow(IslandData& data, const core::SnapshotInterpolator& island, Camera& camera, double blend);

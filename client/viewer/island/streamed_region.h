@@ -1,7 +1,7 @@
 // StreamedRegion: chooses the region and the level of detail in which a large island is streamed.
 //
-// The region is twice as wide and high as the visible part, so that a small pan stays inside it. It changes at most once
-// per `interval`.
+// The region is twice as wide and high as the visible part, so that a small pan stays inside it. It changes at most
+// once per `interval`.
 //
 // Owner        WorldView.
 // Threads      none; used by the thread that draws.

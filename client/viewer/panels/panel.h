@@ -21,7 +21,8 @@ class Panel {
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
         IslandData& island_data;
-        /// Whether this is the first frame after the panel was hidden; set by Panels. A hidden panel receives no events.
+        /// Whether this is the first frame after the panel was hidden; set by Panels. A hidden panel receives no
+        /// events.
         bool just_shown = false;
     };
     virtual ~Panel() = default;

@@ -31,7 +31,8 @@ ImVec2 size_of(Rectangle place) {
 
 } // namespace
 
-// F1 shows the help, F12 collapses the sidebar. The other function keys belonged to panels that are now in the page (page_panels.cpp).
+// F1 shows the help, F12 collapses the sidebar. The other function keys belonged to panels that are now in the page
+// (page_panels.cpp).
 Panels::Panels() {
     places_.push_back({std::make_unique<WorldsPanel>(), 2});
     places_.push_back({std::make_unique<RunPanel>(), 3});

@@ -22,8 +22,8 @@ class Panels {
   public:
     Panels();
 
-    /// Shows panel `index` and gives it the keyboard: expands the sidebar and chooses the tab. Ignores an index beyond the
-    /// last panel.
+    /// Shows panel `index` and gives it the keyboard: expands the sidebar and chooses the tab. Ignores an index beyond
+    /// the last panel.
     void show(std::size_t index);
     /// Shows the panel with this title.
     void show(std::string_view title);

@@ -61,6 +61,24 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
     widgets::note(text + "\n" + words_of(about.effect()).sentence + std::string{more});
 }
 
+/// Builds the heading of a group. Returns whether the group is open.
+bool build_heading(std::string_view title, bool must_open) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, ImGui::GetColorU32(ImGuiCol_Header));
+    if (must_open) { // a group that contains matches, edits or rejected values
+        ImGui::SetNextItemOpen(true);
+    }
+    const std::string name{title};
+    constexpr ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen |
+                                         ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_FramePadding;
+    ImGui::TablePushBackgroundChannel(); // otherwise the column would clip the title
+    const bool open = ImGui::TreeNodeEx(name.c_str(), flags);
+    widgets::mark("group " + name);
+    ImGui::TablePopBackgroundChannel();
+    return open;
+}
+
 } // namespace
 
 void ParametersPanel::build(Context& context) {
@@ -264,24 +282,6 @@ void ParametersPanel::build_rows(float scale) {
     }
 }
 
-/// Builds the heading of a group. Returns whether the group is open.
-bool ParametersPanel::build_heading(std::string_view title, bool must_open) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, ImGui::GetColorU32(ImGuiCol_Header));
-    if (must_open) { // a group that contains matches, edits or rejected values
-        ImGui::SetNextItemOpen(true);
-    }
-    const std::string name{title};
-    constexpr ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen |
-                                         ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_FramePadding;
-    ImGui::TablePushBackgroundChannel(); // otherwise the column would clip the title
-    const bool open = ImGui::TreeNodeEx(name.c_str(), flags);
-    widgets::mark("group " + name);
-    ImGui::TablePopBackgroundChannel();
-    return open;
-}
-
 void ParametersPanel::build_row(const Row& row) {
     const std::size_t i = row.parameter;
     const ParameterDescription& about = edits_.registry()[i];
@@ -406,7 +406,7 @@ void ParametersPanel::build_menu(std::size_t i) {
         return;
     }
     if (ImGui::MenuItem("Discard the edit", nullptr, false, edits_.is_edited(i))) {
-        edits_.revert(i);
+        edits_.edit(i, edits_.requested_value(i));
     }
     widgets::mark("Discard the edit");
     const std::string set_default = "Default: " + to_text(about.default_value());

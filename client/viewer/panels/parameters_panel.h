@@ -35,7 +35,6 @@ class ParametersPanel : public Panel {
         std::size_t parameter; // index in the registry
         std::string name;      // the name of its widget for scripts
     };
-    static bool build_heading(std::string_view title, bool must_open);
     void build_row(const Row& row);
     void build_field(const Row& row);
     static void add_label(const Row& row, const evod::v1::ParameterDescription& about);

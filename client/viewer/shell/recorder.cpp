@@ -123,8 +123,8 @@ class Recorder {
         return wait_until([&] { return is_at_target(); }, may_command);
     }
 
-    /// Runs the world to a tick and stops it there. If the world has already passed this tick, it only stops. The answer
-    /// contains the tick at which it stopped.
+    /// Runs the world to a tick and stops it there. If the world has already passed this tick, it only stops. The
+    /// answer contains the tick at which it stopped.
     void step(std::uint64_t tick) {
         target_ = tick;
         evod::v1::Request request;

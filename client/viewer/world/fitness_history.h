@@ -1,8 +1,8 @@
 // FitnessHistory: the best and the mean fitness of all finished generations of the viewed run, of all islands together.
 //
 // Earlier generations are requested page by page. Events add each generation that ends. If generations may have been
-// missed (dropped events, a broken connection), they are requested again. A replay of a live world shows the generations
-// of the live world.
+// missed (dropped events, a broken connection), they are requested again. A replay of a live world shows the
+// generations of the live world.
 //
 // Owner        the summary in the sidebar.
 // Threads      none; used by the thread that draws.

@@ -178,10 +178,6 @@ std::vector<ParameterGroup> group(std::span<const ParameterDescription> registry
 
 void ParameterEdits::describe(std::vector<ParameterDescription> registry) {
     registry_ = std::move(registry);
-    index_.clear();
-    for (std::size_t i = 0; i < registry_.size(); ++i) {
-        index_.emplace(registry_[i].name(), i);
-    }
     forget();
 }
 
@@ -195,15 +191,20 @@ void ParameterEdits::forget() {
     problem_.clear();
 }
 
+std::optional<std::size_t> ParameterEdits::index_of(std::string_view name) const {
+    const auto found = std::ranges::find(registry_, name, &ParameterDescription::name);
+    return found == registry_.end() ? std::nullopt : std::optional{static_cast<std::size_t>(found - registry_.begin())};
+}
+
 void ParameterEdits::take(const evod::v1::ParameterState& reported) {
-    const auto found = index_.find(reported.name());
-    if (found == index_.end()) {
+    const auto found = index_of(reported.name());
+    if (!found) {
         return;
     }
-    State& state = states_[found->second];
+    State& state = states_[*found];
     state.value = reported.value();
     state.pending = reported.has_pending() ? std::optional{reported.pending()} : std::nullopt;
-    if (state.edit && same(*state.edit, requested_value(found->second))) {
+    if (state.edit && same(*state.edit, requested_value(*found))) {
         state.edit.reset();
         state.violation.reset();
     }
@@ -225,8 +226,8 @@ bool ParameterEdits::update(const evod::v1::ParametersChanged& changed) {
     }
     for (const evod::v1::ParameterState& state : changed.changed()) {
         take(state);
-        if (const auto found = index_.find(state.name()); found != index_.end()) {
-            states_[found->second].client_of_last_change = core::to_text(changed.by());
+        if (const auto found = index_of(state.name())) {
+            states_[*found].client_of_last_change = core::to_text(changed.by());
         }
     }
     const bool next = changed.revision() == revision_ + 1;
@@ -260,15 +261,11 @@ void ParameterEdits::forget_refusal() {
 }
 
 void ParameterEdits::edit(std::size_t i, ParameterValue value) {
-    revert(i);
+    states_[i].edit.reset();
+    forget_refusal();
     if (!same(value, requested_value(i))) {
         states_[i].edit = std::move(value);
     }
-}
-
-void ParameterEdits::revert(std::size_t i) {
-    states_[i].edit.reset();
-    forget_refusal();
 }
 
 void ParameterEdits::revert_all() {
@@ -303,24 +300,14 @@ std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world)
     return request;
 }
 
-void ParameterEdits::take_acceptance() {
-    for (const Sent& sent : sent_) {
-        State& state = states_[sent.parameter];
-        state.client_of_last_change.clear();
-        if (state.edit && same(*state.edit, sent.value)) {
-            state.edit.reset(); // otherwise the user has edited the value again before the answer
-        }
-    }
-}
-
 void ParameterEdits::take_refusal(const evod::v1::Status& status) {
     bool marked = false, is_stale = false;
     for (const evod::v1::Violation& violation : status.violations()) {
         const std::string_view field = violation.field();
         const std::string_view name = field.substr(field.starts_with(field_prefix) ? field_prefix.size() : 0);
         is_stale = is_stale || name == "expected_revision";
-        if (const auto found = index_.find(name); found != index_.end()) {
-            states_[found->second].violation = violation;
+        if (const auto found = index_of(name)) {
+            states_[*found].violation = violation;
             marked = true;
         }
     }
@@ -336,7 +323,13 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     forget_refusal();
     const bool done = response != nullptr && response->status().code() == evod::v1::CODE_UNSPECIFIED;
     if (done) {
-        take_acceptance();
+        for (const Sent& sent : sent_) {
+            State& state = states_[sent.parameter];
+            state.client_of_last_change.clear();
+            if (state.edit && same(*state.edit, sent.value)) {
+                state.edit.reset(); // otherwise the user has edited the value again before the answer
+            }
+        }
         if (response->has_parameters()) {
             update(response->parameters());
         }

@@ -13,7 +13,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -103,13 +102,12 @@ class ParameterEdits {
 
     /// Edits a value. A value equal to requested_value() removes the edit.
     void edit(std::size_t i, evod::v1::ParameterValue value);
-    void revert(std::size_t i);
     void revert_all();
     std::size_t edit_count() const;
 
     bool busy() const { return !sent_.empty(); }
-    /// Returns the request that sends all edits. The caller must send it and call answered() exactly once for it. Returns
-    /// nullopt if there is no edit or a request is pending.
+    /// Returns the request that sends all edits. The caller must send it and call answered() exactly once for it.
+    /// Returns nullopt if there is no edit or a request is pending.
     std::optional<evod::v1::Request> apply(const std::string& world);
     /// response  the server's answer to the pending request; null: no answer arrived
     /// returns   whether the caller must request the complete set.
@@ -131,16 +129,15 @@ class ParameterEdits {
         evod::v1::ParameterValue value;
     };
 
+    std::optional<std::size_t> index_of(std::string_view name) const;
     void forget_refusal();
     void take(const evod::v1::ParameterState& state);
-    void take_acceptance();
     void take_refusal(const evod::v1::Status& status);
 
     std::vector<evod::v1::ParameterDescription> registry_;
-    std::map<std::string, std::size_t, std::less<>> index_; // index by parameter name
-    std::vector<State> states_;                             // one per parameter, in the order of the registry
-    std::uint64_t revision_ = 0;                            // 0: no set has been received
-    std::vector<Sent> sent_;                                // the values in the pending request
+    std::vector<State> states_;  // one per parameter, in the order of the registry
+    std::uint64_t revision_ = 0; // 0: no set has been received
+    std::vector<Sent> sent_;     // the values in the pending request
     std::string problem_;
 };
 

@@ -3,6 +3,8 @@
 // The server provides a replay as a separate world beside the live one. The replay belongs to this session:
 // ReplayControl opens and closes it, and the session may command it in any role.
 //
+// It has more than 30 members, because opening, seeking, forking and returning change the same state.
+//
 // Owner        ViewedWorld.
 // Threads      used by the thread that draws.
 #pragma once

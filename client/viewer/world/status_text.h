@@ -38,7 +38,8 @@ std::string generation_title(const evod::v1::SnapshotFrame& snapshot);
 /// Returns the label of a replay: "REPLAY of default" for a replay of a live world, "REPLAY" for one of a run file.
 std::string replay_label(const evod::v1::Replay& replay);
 
-/// Returns what the window shows: "World default", "Replay of default, generation 12", "Replay of a file, generation 12".
+/// Returns what the window shows: "World default", "Replay of default, generation 12", "Replay of a file, generation
+/// 12".
 std::string shown_text(const std::string& world, const evod::v1::Replay* replay,
                        const evod::v1::SnapshotFrame* snapshot);
 

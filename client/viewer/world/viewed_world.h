@@ -1,5 +1,5 @@
-// ViewedWorld: the world that the window shows. It has four parts: the connection to the server, the data that the server
-// reports about the world, the commands to the world, and its replays.
+// ViewedWorld: the world that the window shows. It has four parts: the connection to the server, the data that the
+// server reports about the world, the commands to the world, and its replays.
 //
 // No function blocks. Requests are only sent, and update() processes everything received since the last call.
 //

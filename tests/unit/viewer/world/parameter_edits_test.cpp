@@ -164,7 +164,7 @@ TEST_F(ParameterEditsTest, TheNextEditOrAnswerClearsARefusal) {
     edits.edit(mutation_chance, real(0.5));
     expect_no_refusal();
     refuse();
-    edits.revert(mutation_chance);
+    edits.edit(mutation_chance, edits.requested_value(mutation_chance));
     expect_no_refusal();
     refuse();
     ASSERT_TRUE(edits.apply("w")); // another client has made it valid
