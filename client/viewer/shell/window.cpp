@@ -107,12 +107,12 @@ std::string Window::problem_of(Action action) {
     case Action::NextIsland:
     case Action::PreviousIsland:
     case Action::AllIslands:
-        return world.feed.island_count() > 1 ? "" : "This world has only one island";
+        return world.feed.island_count() > 1 ? "" : "There is only one island";
     case Action::PreviousGeneration:
     case Action::NextGeneration:
         return world.replay.info() != nullptr ? "" : "Only a replay has a time line: press P to open one";
     case Action::Follow:
-        return world.feed.selected() ? "" : "No organism is selected: click one first";
+        return world.feed.selected() ? "" : "Select an organism first: click it";
     default:
         return "";
     }

@@ -354,7 +354,7 @@ TEST_F(PanelsTest, ALineWithoutEffectFails) {
     EXPECT_THAT(error_of("set \"Step ticks\" 5"), HasSubstr("is not a field"));
     EXPECT_THAT(error_of("type 5"), HasSubstr("no field has the keyboard focus"));
     EXPECT_THAT(error_of("key A"), HasSubstr("key A: this key has no effect"));
-    EXPECT_THAT(error_of("key Tab"), HasSubstr("key Tab: This world has only one island"));
+    EXPECT_THAT(error_of("key Tab"), HasSubstr("key Tab: There is only one island"));
     EXPECT_THAT(error_of("key ["), HasSubstr("key [: Only a replay has a time line"));
     EXPECT_THAT(error_of("click organism 99"), HasSubstr("organism 99 is not on the screen"));
     EXPECT_THAT(error_of("key B"), HasSubstr("two worlds side by side are in the browser page"));
