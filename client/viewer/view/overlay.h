@@ -25,7 +25,6 @@ class Overlay {
     void notice(std::string text, Clock::time_point now);
     void toggle_help() { help_ = !help_; }
     bool help() const { return help_; }
-    void close_help() { help_ = false; }
 
     // Call the following functions between Gui::begin() and Gui::draw().
 

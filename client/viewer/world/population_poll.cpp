@@ -53,7 +53,6 @@ void PopulationPoll::take(const evod::v1::Population& page) {
     }
     if (!ended) {
         complete_ = std::move(incomplete_);
-        ++complete_count_;
     }
     restart();
     poll_.wait(std::max<Clock::duration>(interval_, 4 * (Clock::now() - restarted_)));
