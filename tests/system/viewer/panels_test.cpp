@@ -20,11 +20,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string read_file(const std::string& path) {
-    std::ifstream file{path};
-    return {std::istreambuf_iterator<char>{file}, {}};
-}
-
 struct PanelsTest : testing::Test {
     std::string write(const std::string& script) const {
         std::string path = folder.file("script");
@@ -49,13 +44,6 @@ struct PanelsTest : testing::Test {
 
     TemporaryFolder folder;
 };
-
-/// Returns the answer to a request, which the server must accept.
-evod::v1::Response ask(RealServer& server, const evod::v1::Request& request) {
-    auto response = server.connection->request(request, hang).value();
-    EXPECT_TRUE(core::accepted(response)) << core::to_text(response.status());
-    return response;
-}
 
 TEST_F(PanelsTest, WhatOnlyThePageHasLeadsToThePage) {
     RealServer with_page{{"--seed", "7", "--web", "--http-port", "0"}}, without{{"--seed", "7"}};

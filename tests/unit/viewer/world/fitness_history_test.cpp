@@ -9,6 +9,7 @@ struct FitnessHistoryTest : ViewedWorldTest {
     FitnessHistoryTest() {
         world.emplace(wanted());
         session.emplace(begin(*world));
+        until(*world, [&] { return session->unread_bytes() > 0; });
         answer_statistics(*session, session->read_request());
         until(*world, [&] { return world->all_answered(); });
     }
