@@ -58,7 +58,7 @@ TEST_F(RecentServersTest, DropsTheOldest) {
 }
 
 TEST_F(RecentServersTest, ReportsAnInvalidFileAndKeepsIt) {
-    const std::string bad = "lab:7744\nthis is no address\n";
+    const std::string bad = "lab:7744\nthis is not an address\n";
     write(bad);
     RecentServers recent{file};
     EXPECT_TRUE(recent.addresses().empty());
