@@ -247,12 +247,12 @@ bool Dispatcher::ask(Session& session, std::uint64_t request_id, std::string_vie
 }
 
 void Dispatcher::ask(Session& session, v1::Request request) {
-    const auto asked = std::make_shared<const v1::Request>(std::move(request));
+    const auto shared_request = std::make_shared<const v1::Request>(std::move(request));
     const bool users_only = session.user().role < access::Role::Controller;
-    if (ask(session, asked->request_id(), protocol::world_of(*asked),
-            runtime::QueryMail{session.number(), asked, users_only, session.account()})) {
+    if (ask(session, shared_request->request_id(), protocol::world_of(*shared_request),
+            runtime::QueryMail{session.number(), shared_request, users_only, session.account()})) {
         session.requests.query_under_way = true;
-        session.requests.expect(held_bytes(*asked));
+        session.requests.expect(held_bytes(*shared_request));
     }
 }
 
@@ -381,10 +381,10 @@ void Dispatcher::on_done(const runtime::ReplayMemory& memory) {
 }
 
 void Dispatcher::find_run(Session& session, v1::Request request) {
-    const auto asked = std::make_shared<const v1::Request>(std::move(request));
-    const std::string world = protocol::lookup_name(protocol::world_of(*asked));
-    if (ask(session, asked->request_id(), world, runtime::FindRun{world, session.number(), asked})) {
-        session.requests.expect(held_bytes(*asked));
+    const auto shared_request = std::make_shared<const v1::Request>(std::move(request));
+    const std::string world = protocol::lookup_name(protocol::world_of(*shared_request));
+    if (ask(session, shared_request->request_id(), world, runtime::FindRun{world, session.number(), shared_request})) {
+        session.requests.expect(held_bytes(*shared_request));
     }
 }
 

@@ -212,8 +212,8 @@ void Perception::notice(View& view, const Circles& bodies, const base::Column<fl
     }
     const float to_x = physics::distance_px(bodies.x[i], view.x[i]),
                 to_y = physics::distance_px(bodies.y[i], view.y[i]);
-    const float known = std::min(to_x * to_x + to_y * to_y, radius[i] * radius[i]);
-    base::fetch_min<true>(view.others[i], distance > 0 && known < distance * distance ? distance : needs_search);
+    const float known_square = std::min(to_x * to_x + to_y * to_y, radius[i] * radius[i]);
+    base::fetch_min<true>(view.others[i], distance > 0 && known_square < distance * distance ? distance : needs_search);
 }
 
 void Perception::reorder(const physics::Reordering& reordering) {

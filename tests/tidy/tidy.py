@@ -111,6 +111,19 @@ def banned_words(path, text):
                 yield path, number, f"`{name}`: the name is {BANNED_NAMES[name]}"
 
 
+# "the output is no terminal", but not "there is no terminal" and "it is no longer there"
+IS_NO = re.compile(r"(?<!\bthere )\b(is|are|was|were) no (?!longer\b|more\b|less\b)\w+", re.I)
+
+
+def banned_grammar(path, text):
+    """Sentences that say "is no X" for "is not a X"."""
+    for number, line in enumerate(text.splitlines(), 1):
+        for found in IS_NO.finditer(line):
+            # a line may begin with the end of "there is no X"
+            if re.search(r"\w", re.sub(r"^\s*(///?|\*|#)\s*", "", line[:found.start()])):
+                yield path, number, f"`{found.group()}`: write '{found.group(1)} not' or 'there {found.group(1)} no'"
+
+
 def missing_braces(path, text):
     """Statements after if, else, for, while and do that have no braces."""
     if path.suffix not in (".cpp", ".h"):
@@ -284,8 +297,8 @@ def python_names(path, text):
                 yield path, statement.lineno, f"`{name}` is never used: remove it"
 
 
-RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source,
-         large_function, long_line, python_names)
+RULES = (banned_words, banned_grammar, missing_braces, torn_comments, long_test_names, header_without_page,
+         large_source, large_function, long_line, python_names)
 
 # Sources without a unit test of their own, by folder → the tests that cover them. `*` is every source below the folder.
 UNIT_TESTED_ELSEWHERE = {
@@ -436,7 +449,7 @@ def findings(root):
         except UnicodeDecodeError:
             continue
         for rule in RULES:
-            if rule is banned_words and WITHOUT_WORDS.search(name):
+            if rule in (banned_words, banned_grammar) and WITHOUT_WORDS.search(name):
                 continue
             yield from rule(path, text)
     yield from untested_sources(names, lambda name: (root / name).read_text())

@@ -16,14 +16,14 @@ namespace {
 using base::RefusalCode;
 using std::chrono::milliseconds;
 
-class GateTest : public testing::Test {
+class AuthenticationTest : public testing::Test {
   protected:
     support::TemporaryFolder temporary;
     const std::string& folder = temporary.path();
     Authenticator::Clock::time_point now;
 };
 
-TEST_F(GateTest, ARequiredTokenMustExist) {
+TEST_F(AuthenticationTest, ARequiredTokenMustExist) {
     EXPECT_EQ(Authenticator::open(folder, true).error().code, RefusalCode::FailedPrecondition);
     EXPECT_EQ(Authenticator::open(std::nullopt, true).error().code, RefusalCode::FailedPrecondition);
     auto authenticator = Authenticator::open(std::nullopt, false);
@@ -32,7 +32,7 @@ TEST_F(GateTest, ARequiredTokenMustExist) {
     EXPECT_EQ(authenticator->admit("evod_x", "a", now).error().code, RefusalCode::Unauthenticated);
 }
 
-TEST_F(GateTest, EachFailureDoublesTheWaitOfItsAddress) {
+TEST_F(AuthenticationTest, EachFailureDoublesTheWaitOfItsAddress) {
     const std::string secret = *add_token(folder, "anna", Role::Viewer);
     auto authenticator = *Authenticator::open(folder, true);
     milliseconds delay = Authenticator::delay_min;
@@ -50,7 +50,7 @@ TEST_F(GateTest, EachFailureDoublesTheWaitOfItsAddress) {
     EXPECT_TRUE(authenticator.admit(secret, "a", now + Authenticator::delay_min));
 }
 
-TEST_F(GateTest, AKnownTokenIsAlwaysAdmitted) {
+TEST_F(AuthenticationTest, AKnownTokenIsAlwaysAdmitted) {
     const std::string secret = *add_token(folder, "anna", Role::Viewer);
     auto authenticator = *Authenticator::open(folder, true);
     for (int i = 0; i < 100; ++i, now += milliseconds{200}) { // a stale token behind the same NAT
@@ -59,14 +59,14 @@ TEST_F(GateTest, AKnownTokenIsAlwaysAdmitted) {
     }
 }
 
-TEST_F(GateTest, AMissingTokenIsRefusedWithoutAWait) {
+TEST_F(AuthenticationTest, AMissingTokenIsRefusedWithoutAWait) {
     const std::string secret = *add_token(folder, "anna", Role::Viewer);
     auto authenticator = *Authenticator::open(folder, true);
     EXPECT_EQ(authenticator.admit("", "a", now).error().code, RefusalCode::Unauthenticated);
     EXPECT_TRUE(authenticator.admit(secret, "a", now));
 }
 
-TEST_F(GateTest, TheOldestAddressesAreForgottenFirst) {
+TEST_F(AuthenticationTest, TheOldestAddressesAreForgottenFirst) {
     auto authenticator = *Authenticator::open(folder, false);
     for (std::size_t i = 0; i < Authenticator::addresses_max + 1; ++i, now += std::chrono::microseconds{10}) {
         EXPECT_FALSE(authenticator.admit("wrong", std::to_string(i), now));
@@ -75,7 +75,7 @@ TEST_F(GateTest, TheOldestAddressesAreForgottenFirst) {
     EXPECT_EQ(authenticator.admit("wrong", "2", now).error().code, RefusalCode::ResourceExhausted);
 }
 
-TEST_F(GateTest, AChangedFileIsReadAgain) {
+TEST_F(AuthenticationTest, AChangedFileIsReadAgain) {
     const std::string anna = *add_token(folder, "anna", Role::Viewer), karl = *add_token(folder, "karl", Role::Admin);
     auto authenticator = *Authenticator::open(folder, true);
     const AuthenticatedUser user = *authenticator.admit(anna, "a", now);
@@ -95,7 +95,7 @@ TEST_F(GateTest, AChangedFileIsReadAgain) {
     EXPECT_EQ(authenticator.admit(karl, "a", now).error().code, RefusalCode::Unavailable);
 }
 
-TEST_F(GateTest, ACreatedCertificateCanBeLoaded) {
+TEST_F(AuthenticationTest, ACreatedCertificateCanBeLoaded) {
     for (int i = 0; i < 300; ++i) {
         ASSERT_TRUE(create_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
         std::FILE* file = std::fopen((folder + "/evod.crt").c_str(), "r");
