@@ -1,5 +1,5 @@
 // PaneAreas: the shown worlds, one or two next to each other, and which of them has the focus.
-import {link_texts} from "../texts/pane";
+import {link_texts, pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {Server} from "../world/server";
@@ -13,7 +13,7 @@ export interface PaneAreasOptions extends Pick<PaneAreaOptions, "notify"|"attemp
 }
 
 export class PaneAreas {
-  readonly element = h("main", {class: "worlds", id: "worlds", tabindex: -1});
+  readonly element = h("main", {class: "worlds", id: "worlds", tabindex: -1, "aria-label": pane_texts.shown});
   readonly all: PaneArea[] = [];
   #focused = 0;
   #last_pane = -1;

@@ -16,10 +16,11 @@ export class OriginNote {
   /** on_open: called after the generation is shown in the world of the origin, which has the focus. */
   constructor(context: PanelContext, on_open: (generation: number) => void) {
     this.#context = context;
-    this.#open = h(
-      "button",
-      {type: "button", class: "button", title: origin_texts.open_help, onclick: () => void this.#show(on_open)});
-    this.element = h("div", {class: "panel origin-note", hidden: true}, this.#text, h("div", {class: "row"}, this.#open));
+    this.#open =
+      h("button",
+        {type: "button", class: "button", title: origin_texts.open_help, onclick: () => void this.#show(on_open)});
+    this.element =
+      h("div", {class: "panel origin-note", hidden: true}, this.#text, h("div", {class: "row"}, this.#open));
   }
 
   /** run_id: of the origin; empty: the note is hidden. generation: that bred there. organism: of that generation, to be

@@ -8,6 +8,7 @@ function organisms(count: number): string {
 
 export const pane_texts = {
   kind: "island",
+  shown: "Shown worlds",
   no_offscreen_canvas: "This browser cannot draw the island, because it has no OffscreenCanvas. " +
     "Use a current version of Chrome, Edge, Firefox or Safari.",
   no_webgl: "This browser has no WebGL2: the island is drawn in less detail, and large populations as densities.",

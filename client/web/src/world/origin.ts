@@ -1,7 +1,9 @@
 // Origin: where the generations before a fork are: in the run of which the shown world is a fork. The server has them
 // only in the world with that run.
 import {origin_texts} from "../texts/origin";
+
 import {Refusal} from "./server";
+
 import type {Server} from "./server";
 
 /** The id of the run of which a world is a fork, if a request was refused because that run has what was asked for. */
