@@ -193,9 +193,8 @@ void Island::skip_tick(std::uint32_t tick) {
 /// The work of a tick, in the order of this function:
 /// 1. The list of near pairs is rebuilt if bodies have moved too far. Due items reappear. Where an item has appeared or
 ///    disappeared, the cached perceptions of organisms near it become invalid.
-/// 2. First loop: organisms without a valid perception perceive. All organisms lose health and choose their forces,
-/// which
-///    change their velocities. Contacts are found.
+/// 2. First loop: organisms without a valid perception perceive. All organisms lose health and choose their forces.
+///    The forces change their velocities. Contacts are found.
 /// 3. Contacts are resolved.
 /// 4. Second loop: organisms move. Items that organisms touch, and organisms without health, are found. The block is
 ///    hashed.

@@ -23,7 +23,7 @@ TEST(Plan, SaysWhatASpeedMeans) {
               "at 1×, a generation of 40.0 s takes 40.0 s: 30 generations take about 20:00 min; evoctl speed max is "
               "faster");
     EXPECT_EQ(plan_text(world_at(20), durations, 1),
-              "at 20x, a generation of 40.0 s takes 2.0 s: 1 generation takes about 2.0 s");
+              "at 20×, a generation of 40.0 s takes 2.0 s: 1 generation takes about 2.0 s");
     EXPECT_EQ(plan_text(world_at(4), durations, std::nullopt),
               "at 4×, a generation of 40.0 s takes 10.0 s; evoctl speed max is faster");
 }

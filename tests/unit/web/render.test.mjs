@@ -318,7 +318,7 @@ test("trails keep three simulated seconds", () => {
 
 /** A renderer that draws into `scenes`. */
 function renderer_of(scenes) {
-  const painter = { kind: "canvas2d", organisms_max: Infinity, label_height: 13, measure: () => 10, draw: (scene) => scenes.push(scene), close() {} };
+  const painter = { measure: () => 10, draw: (scene) => scenes.push(scene), close() {} };
   const renderer = new render.Renderer({}, { painter: () => painter, fill() {}, close() {} });
   renderer.resize(100, 100, 1);
   return renderer;

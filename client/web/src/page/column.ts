@@ -32,10 +32,6 @@ export class Column {
     return this.#summary.curve;
   }
 
-  get shown(): Panel {
-    return this.#tabs.shown!;
-  }
-
   /** Shows a panel. */
   show(panel: Panel): void {
     if (panel === this.#tabs.shown) {

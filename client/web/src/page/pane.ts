@@ -79,11 +79,12 @@ export class Pane {
     this.#ends.push(
       observe_size(this.#canvas, (size, pixel_ratio) => this.#resized(size, pixel_ratio)),
       options.worker.on_message((message) => this.#take(message)), this.#world.changes.listen(() => this.#refresh()));
-    if (typeof this.#canvas.transferControlToOffscreen === "function") {
+    if (new OffscreenCanvas(1, 1).getContext("webgl2") === null) {
+      set_text(this.#note, pane_texts.no_webgl);
+      this.#note.hidden = false;
+    } else {
       const canvas = this.#canvas.transferControlToOffscreen();
       options.worker.post({kind: "pane", pane: this.#world.feed.pane, canvas}, [canvas as unknown as Transferable]);
-    } else {
-      this.#show_note(pane_texts.no_offscreen_canvas);
     }
     this.#refresh();
   }
@@ -121,9 +122,6 @@ export class Pane {
     this.#legend.refresh(this.#world, this.tiles.is_on);
     this.tiles.refresh(this.view.size, this.view.island);
     this.#refresh_hint(drawing);
-    if (drawing?.renderer === "canvas2d") {
-      this.#show_note(pane_texts.no_webgl);
-    }
   }
 
   #take_size_of_island(width: number, height: number): void {
@@ -146,11 +144,6 @@ export class Pane {
     if (!is_on && had_focus) {
       this.#canvas.focus({preventScroll: true});
     }
-  }
-
-  #show_note(text: string): void {
-    set_text(this.#note, text);
-    this.#note.hidden = false;
   }
 
   #resized(size: Size, pixel_ratio: number): void {

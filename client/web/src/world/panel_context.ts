@@ -13,8 +13,6 @@ export interface PanelContext {
   readonly server: Server;
   /** The world of the pane with the focus. */
   world(): ViewedWorld;
-  /** The world of the other pane if two are shown side by side. */
-  other(): ViewedWorld|null;
   /** Shows a second world beside the first, and focuses it. */
   show_beside(world: string, island?: number): void;
   /** Creates a world that starts from the shown moment, and shows it beside its origin. */
