@@ -7,7 +7,7 @@ import {label_height} from "./glyphs";
 
 import type {KeptBoxes, Points} from "./interpolator";
 import {type Colour, css, with_alpha} from "./look";
-import {is_kept, may_touch} from "./marks";
+import {few_organisms, is_kept, may_touch, seen_pixels_min} from "./marks";
 import {arrow_px_per_force, chosen_rows, colour_of_choice, inside_walls, Painter, Scene, Surface} from "./scene";
 
 const items_max = 3_000;
@@ -122,7 +122,7 @@ class Fallback implements Painter {
     const context = this.#context;
     const {at, blend, camera, colours, place, organism_colours} = scene;
     const {latest} = at;
-    const visible = visible_part(camera, place);
+    const visible = visible_part(camera, place), is_seen = latest.has_headings || latest.count <= few_organisms;
     const bytes =
       organism_colours === null ? null : new Uint8Array(organism_colours.buffer, organism_colours.byteOffset);
     for (let i = 0; i < latest.count; ++i) {
@@ -132,7 +132,7 @@ class Fallback implements Painter {
       }
       const x = x_of(at.x_at(i, blend));
       const y = y_of(at.y_at(i, blend));
-      const radius = Math.max(radius_px * camera.zoom, 1.5);
+      const radius = Math.max(radius_px * camera.zoom, is_seen ? seen_pixels_min : 1.5);
       const share = Math.min(latest.health[i]! / steps_per_px / scene.health_max, 1);
       context.fillStyle =
         bytes !== null ? `rgb(${bytes[4 * i]}, ${bytes[4 * i + 1]}, ${bytes[4 * i + 2]})` : css(colours.body);
