@@ -24,8 +24,8 @@ export interface PanelContext {
   /** Lets each click in the focused island place a copy of the model. Returns whether it can; if not, a message says
    *  why. */
   place_by_clicks(model: PlacedModel): boolean;
-  /** Shows a short message at the bottom, read by screen readers. */
-  notify(text: string): void;
+  /** Shows a short message at the bottom, read by screen readers. action: a button of the message. */
+  notify(text: string, action?: {label: string; act: () => void}): void;
   /** Runs a request, and shows the sentence of a refusal. Returns whether it succeeded. */
   attempt(what: () => Promise<unknown>): Promise<boolean>;
 }
