@@ -26,7 +26,7 @@ export const pane_texts = {
   end_of_replay: "end of the replay",
   slower: " slower",
   close: "Close this world",
-  beside: "Show a second world next to this one (B)",
+  beside: "Choose a second world to show next to this one (B)",
 };
 
 /** How much room a tile has for its label. */
