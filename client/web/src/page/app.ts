@@ -128,6 +128,11 @@ export class App implements KeyTarget {
     return this.panes.focused.world;
   }
 
+  /** The world of the other pane if two are shown side by side. */
+  other(): ViewedWorld|null {
+    return this.panes.other?.world ?? null;
+  }
+
   open = (name: string, subject?: {[key: string]: unknown}): void => {
     const panel = this.column.panels.find((one) => one.name === name);
     if (!panel) {
