@@ -128,6 +128,8 @@ class Tasks(Case):
         self.control.call(create_world=c.CreateWorld(name="other", seed=2))
         self.browser.wait("evod.server.world_names.length === 2", "two worlds")
         self.key("b")
+        self.act(self.browser.click, self.browser.wait("""[...document.querySelectorAll("dialog[open] .second-choice")]
+            .find((e) => e.innerText.startsWith("other"))""", "the other world in the list"))
         self.browser.wait("evod.app.areas.map((area) => area.world.name).join() === 'default,other'", "both worlds")
 
     def test_compare_the_curves_of_two_worlds(self):

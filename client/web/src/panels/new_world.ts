@@ -76,7 +76,10 @@ class NewWorldDialog {
     {class: "field", rows: 8, spellcheck: "false", "aria-label": texts.text_label, oninput: () => this.#choose_none()});
   #beside = h("input", {type: "checkbox"});
   #error = h("p", {class: "error grow", role: "alert"});
-  #create = h("button", {type: "submit", class: "button button-primary"}, texts.create);
+  #create = h("button", {type: "submit", class: "button"}, texts.create);
+  #create_and_run =
+    h("button", {type: "button", class: "button button-primary", onclick: () => void this.#send(true)},
+      texts.create_and_run);
   #same_label = h("span", {});
   #same: HTMLInputElement;
   #name_edited = false;
@@ -129,7 +132,7 @@ class NewWorldDialog {
     };
     const submit = (event: Event): void => {
       event.preventDefault();
-      void this.#send();
+      void this.#send(false);
     };
     return h(
       "form", {class: "panel", onsubmit: submit}, this.#choices,
@@ -141,7 +144,7 @@ class NewWorldDialog {
       h("label", {class: "check"}, this.#beside, texts.beside),
       h("div", {class: "row dialog-end"}, this.#error,
         h("button", {type: "button", class: "button", onclick: () => this.#dialog.close()}, common_texts.cancel),
-        this.#create));
+        this.#create, this.#create_and_run));
   }
 
   #choice(label: HTMLElement, description: string, checked: boolean, act: () => void): HTMLElement {
@@ -228,7 +231,7 @@ class NewWorldDialog {
 
   // ---- creation ----
 
-  async #send(): Promise<void> {
+  async #send(runs: boolean): Promise<void> {
     const name = this.#name.value.trim(), seed = this.#seed.value.trim();
     const seed_wrong = seed !== "" && !(/^\d{1,20}$/.test(seed) && BigInt(seed) <= seed_max);
     const problem = name_problem("name", name) || (seed_wrong ? common_texts.wrong_seed(seed, seed_max) : "");
@@ -238,7 +241,7 @@ class NewWorldDialog {
     if (problem) {
       return;
     }
-    this.#create.disabled = true;
+    this.#create.disabled = this.#create_and_run.disabled = true;
     try {
       const population = await this.#population_fields();
       if (typeof population === "string") {
@@ -254,10 +257,13 @@ class NewWorldDialog {
       } else {
         this.#context.world().show(name);
       }
+      if (runs) {
+        await this.#context.attempt(() => this.#context.server.request("run", {world: name}));
+      }
     } catch (error) {
       set_text(this.#error, (error as Error).message);
     } finally {
-      this.#create.disabled = false;
+      this.#create.disabled = this.#create_and_run.disabled = false;
     }
   }
 }

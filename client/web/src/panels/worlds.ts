@@ -64,7 +64,8 @@ export class WorldsPanel implements Panel {
         this.#fork_error);
     this.#islands = new IslandsTable(context, () => this.element.hidden || this.refresh());
     this.element =
-      h("div", {class: "panel panel-worlds"}, h("table", {class: "table"}, table_head(texts.headings, 2), this.#worlds),
+      h("div", {class: "panel panel-worlds"},
+        h("table", {class: "table", "aria-label": texts.table}, table_head(texts.headings, 2), this.#worlds),
         h("div", {class: "row"}, this.#create, this.#fork, this.#remove), this.#why, this.#confirm, this.#fork_form,
         this.#islands.element);
   }

@@ -32,6 +32,7 @@ export const freezer_texts = {
   busy: "Reading …",
 
   // ---- the list ----
+  list: "Kept organisms and populations",
   list_headings: ["Name", "Content", "From"],
   nothing: "Nothing is kept yet.",
   content: (count: number, islands: number, genes: number) =>
@@ -78,6 +79,7 @@ export const freezer_texts = {
   a_copy_of: (name: string) => `a copy of ${name}`,
 
   // ---- the comparison ----
+  gene_table: "Genes of the kept organism",
   gene_headings: ["Gene", "Kept"],
   difference: "Difference",
   range_heading: "Lowest…highest",
