@@ -1,6 +1,7 @@
 // View panel: selects what the island shows, and how. The same switches in the same order as in evoview
 // (client/viewer/panels/view_panel.cpp).
 import type {Look} from "../core/messages";
+import {panels_texts} from "../texts/panels";
 import {view_texts as texts} from "../texts/view";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -20,7 +21,7 @@ function options(names: Names): {value: string; text: string}[] {
 
 export class ViewPanel implements Panel {
   readonly name = "view";
-  readonly title = texts.title;
+  readonly title = panels_texts.view;
   readonly element: HTMLElement;
   readonly #skin = this.#select(
     (skin) => this.#set(default_look(skin as Look["skin"], this.#look.background, this.#look.interpolate)));
