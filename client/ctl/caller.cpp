@@ -83,8 +83,8 @@ Caller::Caller(const Common& common) : timeout_{common.timeout()} {
                           .client_version = EVOD_VERSION,
                           .connect_timeout = common.timeout(),
                           .unreachable_max = common.timeout()};
-    if (const auto known = core::apply(common.credentials, options); !known) {
-        throw Stop{ExitCode::Usage, known.error().what};
+    if (const auto applied = core::apply(common.credentials, options); !applied) {
+        throw Stop{ExitCode::Usage, applied.error().what};
     }
     connection_ = std::make_unique<core::Connection>(options);
     auto welcome = connection_->wait_connected(timeout_ + std::chrono::seconds{1});
@@ -214,8 +214,7 @@ std::string durability_warning(const v1::Welcome& welcome) {
 
 std::string speed_of(const v1::WorldInfo& world) {
     const v1::Speed& speed = world.speed();
-    return (speed.has_real_time_factor() ? number_text(speed.real_time_factor(), text::Exponent::IfLong) + "x"
-                                         : "max") +
+    return (speed.has_real_time_factor() ? speed_text(speed.real_time_factor()) : "max") +
            (world.slowed() ? " (slower)" : "");
 }
 

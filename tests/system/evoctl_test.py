@@ -19,6 +19,7 @@ import unittest
 import waiting
 
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 class WithServer(unittest.TestCase):
@@ -198,7 +199,7 @@ class Commands(WithServer):
         self.evoctl("speed", "1")
         self.evoctl("set", "generation_s=1.5")
         self.evoctl("reset")
-        self.assertEqual(said("run", "2", "--wait")[0], "at 1x, a generation of 1.5 s takes 1.5 s: 2 generations take "
+        self.assertEqual(said("run", "2", "--wait")[0], "at 1×, a generation of 1.5 s takes 1.5 s: 2 generations take "
                                                         "about 3.0 s; "
                                                         "evoctl speed max is faster")
         self.evoctl("speed", "100")
@@ -264,6 +265,67 @@ class Commands(WithServer):
         self.assertIn("WORLD: got nowhere, allowed ", self.evoctl("fork", "nowhere", "--name", "x", status=1))
         self.assertIn("--at-generation: got 9, allowed 1 to 3",
                       self.evoctl("fork", "default", "--at-generation", "9", "--name", "x", status=1))
+
+    def test_speeds_are_spelled_as_in_the_page(self):
+        for factor, text in json.loads((ROOT / "proto/vectors/speeds.json").read_text()):
+            for word in (str(factor), text, text.replace("×", "x")):
+                self.assertIn(f"waiting at {text}, ", self.evoctl("speed", word))
+            self.assertEqual(self.answer("stats")["world"]["speed"], {"real_time_factor": factor})
+
+    def test_summaries_of_experiments_differ(self):
+        expected = {  # what distinguishes each experiment of the repository
+            "annealing": ["Parameters change in generation 20 and 40.", "The run ends after generation 60."],
+            "bench": ["1,000 organisms"],
+            "brains": ["each steered by an evolving neural network", "Only the fittest have offspring."],
+            "classic": ["20 organisms", "always flee from poison", "orbit their food", "Survivors mutate, too."],
+            "default": ["50 organisms seek food (+25 health) and avoid poison (−40)."],
+            "islands": ["On each of 8 islands: 50 organisms", "Every 10 generations, each island sends a copy of its best "
+                        "organism to the next island."],
+            "rooy": ["each steered by an evolving neural network", "They lose no health", "Fitness is the food eaten"],
+            "trade_offs": ["more or less with its genes"],
+        }
+        files = sorted((ROOT / "experiments").glob("*.json"))
+        self.assertEqual([file.stem for file in files], sorted(expected))
+        summaries = {}
+        for file in files:
+            world = "of_" + file.stem
+            self.evoctl("create", world, "--experiment", str(file))
+            summaries[file.stem] = self.answer("--world", world, "get")["summary"]
+            for words in expected[file.stem]:
+                self.assertIn(words, summaries[file.stem], file.stem)
+        self.assertEqual(len(set(summaries.values())), len(summaries), summaries)
+
+    def test_a_world_is_named_by_value_or_option(self):
+        listing = self.evoctl("--help")
+        commands = re.findall(r"^  ([a-z]+) {2,}\S", listing, re.M)
+        self.assertIn("fork", commands)
+        value_of = {"create": "NAME", "delete": "WORLD", "fork": "WORLD"}  # those whose value names a world
+        for command in commands:
+            usage = self.evoctl(command, "--help").split("\n\n")[0]
+            if command not in value_of:
+                self.assertNotIn("WORLD", usage, command)
+        further = {"fork": ("--name", "forked")}
+        for command, value in value_of.items():
+            rest = further.get(command, ())
+            for given in (("{}",), ("--world", "{}"), ("{}", "--world", "{}")):
+                for before in (True, False):  # the options of evoctl stand before the command or after it
+                    with self.subTest(command, given=given, before=before):
+                        self.evoctl("create", "forked" if command == "create" else "one")
+                        name = "one"
+                        words = [word.format(name) for word in given]
+                        options = words[words.index("--world"):] if "--world" in words else []
+                        values = words[:len(words) - len(options)]
+                        self.evoctl(*(options if before else ()), command, *values, *rest,
+                                    *(() if before else options))
+                        for world in self.evoctl("worlds").split():
+                            if world != "default":
+                                self.evoctl("delete", world)
+            self.assertIn(f"{value} and --world name two worlds: got one and two, allowed one",
+                          self.evoctl("--world", "two", command, "one", *rest, status=2))
+            self.assertIn(f"{value} and --world name two worlds: got one and two, allowed one",
+                          self.evoctl(command, "one", *rest, "--world", "two", status=2))
+        for command in ("create", "delete"):
+            self.assertIn(f"{value_of[command]}: got nothing, a value is required", self.evoctl(command, status=2))
 
     def test_earlier_generations_are_shown(self):
         self.evoctl("create", "small", "--seed", "3", "--set", "generation_s=2")

@@ -125,8 +125,10 @@ test("zoom and centre stay in their ranges", () => {
   const fit = render.fitted(canvas, island);
   assert.equal(render.zoomed(fit, canvas, island, { x: 0, y: 0 }, 1e-9).zoom, fit.zoom / 2);
   assert.equal(render.zoomed(fit, canvas, island, { x: 0, y: 0 }, 1e9).zoom, 64);
-  const far = render.panned(fit, canvas, island, { x: -1e6, y: 1e6 });
-  assert.deepEqual([far.x_px, far.y_px], [2000, 0]);
+  const whole = render.panned(fit, canvas, island, { x: -1e6, y: 1e6 });
+  assert.deepEqual([whole.x_px, whole.y_px], [1000, 500]); // it is all visible
+  const far = render.panned({ ...fit, zoom: 2 }, canvas, island, { x: -1e6, y: 1e6 });
+  assert.deepEqual([far.x_px, far.y_px], [2000 + 7 - 250, 150 - 7]); // the walls and the margin are 7 px at this zoom
 });
 
 test("the minimap appears only while a part is out of sight", () => {
@@ -316,7 +318,7 @@ test("trails keep three simulated seconds", () => {
 
 /** A renderer that draws into `scenes`. */
 function renderer_of(scenes) {
-  const painter = { kind: "canvas2d", organisms_max: Infinity, label_height: 13, measure: () => 10, draw: (scene) => scenes.push(scene), close() {} };
+  const painter = { measure: () => 10, draw: (scene) => scenes.push(scene), close() {} };
   const renderer = new render.Renderer({}, { painter: () => painter, fill() {}, close() {} });
   renderer.resize(100, 100, 1);
   return renderer;

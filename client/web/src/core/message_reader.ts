@@ -70,11 +70,6 @@ class Reader {
     this.#high = high >>> 0;
   }
 
-  uint32(): number {
-    this.#varint();
-    return this.#low;
-  }
-
   tag(): number {
     this.#varint();
     if (this.#high !== 0 || this.#low < 8) {

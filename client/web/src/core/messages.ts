@@ -52,7 +52,6 @@ export type Tool = "select"|"food"|"poison"|"organism"|"remove";
 
 /** What the renderer drew last, for legends and hints. */
 export interface Drawing {
-  renderer: "webgl2"|"canvas2d";
   shows: "nothing"|"organisms"|"dots"|"density";
   density: {cell_px: number; most: number}|null; // the colour scale of the densities is 0 to `most`
   health_max: number; // the upper end of the scale of health

@@ -16,7 +16,7 @@ import {unused_name} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
 import type {Help} from "../panels/help";
 import {key_lines, type KeyTarget, last_panel_key, listen_to_keys} from "./keys";
-import {type Action, Banners, Notices} from "../widgets/notices";
+import {Banners, Notices, type Notify} from "../widgets/notices";
 import {Overview} from "./overview";
 import type {PaneArea} from "./pane_area";
 import {PaneAreas} from "./pane_areas";
@@ -106,6 +106,7 @@ export class App implements KeyTarget {
   /** Shows the present state. */
   refresh(): void {
     const server = this.server, names = server.world_names, {areas} = this;
+    this.#notices.refresh();
     const first = names.includes(first_world) ? first_world : names[0];
     if (server.worlds_known && !areas[0]!.world.name && first !== undefined) {
       areas[0]!.world.show(first);
@@ -150,22 +151,24 @@ export class App implements KeyTarget {
     }
   };
 
-  place_by_clicks = (model: PlacedModel): boolean => {
-    const problem = this.panes.focused.pane.tool.place_copies_of(model);
+  place_by_clicks = (model: PlacedModel): (() => boolean)|null => {
+    const {tool} = this.panes.focused.pane, problem = tool.place_copies_of(model);
     if (problem) {
-      this.notify(problem);
+      this.notify(problem, () => tool.problem("organism", model) === problem);
+      return null;
     }
-    return problem === "";
+    return () => this.panes.focused.pane.tool === tool && tool.tool === "organism" && tool.model === model;
   };
 
-  notify = (text: string, action?: Action): void => this.#notices.show(text, action);
+  notify: Notify = (text, holds, action) => this.#notices.show(text, holds, action);
 
   attempt = async(what: () => Promise<unknown>): Promise<boolean> => {
     try {
       await what();
       return true;
     } catch (error) {
-      this.notify(error instanceof Error ? error.message : String(error));
+      const holds = (): boolean => this.server.state.phase !== "open"; // the request failed for that reason
+      this.notify(error instanceof Error ? error.message : String(error), holds() ? holds : undefined);
       return false;
     }
   };
@@ -252,6 +255,7 @@ export class App implements KeyTarget {
       this.column.refresh();
       this.evolution.refresh();
       this.#banners.set(banners_of(this.server, this.#tokens, this.#link, this.evolution, () => this.refresh()));
+      this.#notices.refresh();
       document.title = app_texts.title(this.world().name);
     }
   }
@@ -280,6 +284,6 @@ function offer_undo(app: App): void {
   const is_last = (): boolean => app.world() === world && world.undo.next_undo === name;
   if (name !== "") {
     const act = (): void => (is_last() ? void undo(app, "undo") : app.notify(undo_texts.not_last(name)));
-    app.notify(undo_texts.done(name), {label: undo_texts.undo, act});
+    app.notify(undo_texts.done(name), undefined, {label: undo_texts.undo, act});
   }
 }

@@ -36,10 +36,6 @@ export class Column {
     this.#show(remembered ?? this.#first);
   }
 
-  get shown(): Panel {
-    return this.#tabs.shown!;
-  }
-
   /** Shows a panel. */
   show(panel: Panel): void {
     if (panel === this.#tabs.shown) {

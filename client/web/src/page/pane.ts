@@ -7,6 +7,7 @@ import type {Point, Size} from "../render/camera";
 import {pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import type {Notify} from "../widgets/notices";
 import type {ViewedWorld} from "../world/world";
 import {observe_size} from "./canvas_size";
 import {Gestures, type GestureTarget} from "./gestures";
@@ -26,7 +27,7 @@ export interface WorkerLink {
 export interface PaneOptions {
   world: ViewedWorld;
   worker: WorkerLink;
-  notify(text: string): void;
+  notify: Notify;
   /** Called when the user presses or focuses the pane. */
   on_focus?(): void;
   /** Called when the user has selected an organism in the pane. */
@@ -80,11 +81,12 @@ export class Pane {
     this.#ends.push(
       observe_size(this.#canvas, (size, pixel_ratio) => this.#resized(size, pixel_ratio)),
       options.worker.on_message((message) => this.#take(message)), this.#world.changes.listen(() => this.#refresh()));
-    if (typeof this.#canvas.transferControlToOffscreen === "function") {
+    if (new OffscreenCanvas(1, 1).getContext("webgl2") === null) {
+      set_text(this.#note, pane_texts.no_webgl);
+      this.#note.hidden = false;
+    } else {
       const canvas = this.#canvas.transferControlToOffscreen();
       options.worker.post({kind: "pane", pane: this.#world.feed.pane, canvas}, [canvas as unknown as Transferable]);
-    } else {
-      this.#show_note(pane_texts.no_offscreen_canvas);
     }
     this.#refresh();
   }
@@ -113,6 +115,7 @@ export class Pane {
     if (snapshot !== null) {
       this.#take_size_of_island(snapshot.width_px, snapshot.height_px);
     }
+    this.view.follow_selection();
     const alive = snapshot === null ?
       "" :
       pane_texts.alive(snapshot.generation, snapshot.live?.alive_count ?? snapshot.counts.organisms);
@@ -121,9 +124,6 @@ export class Pane {
     this.#legend.refresh(this.#world, this.tiles.is_on);
     this.tiles.refresh(this.view.size, this.view.island);
     this.#refresh_hint(drawing);
-    if (drawing?.renderer === "canvas2d") {
-      this.#show_note(pane_texts.no_webgl);
-    }
   }
 
   #take_size_of_island(width: number, height: number): void {
@@ -146,11 +146,6 @@ export class Pane {
     if (!is_on && had_focus) {
       this.#canvas.focus({preventScroll: true});
     }
-  }
-
-  #show_note(text: string): void {
-    set_text(this.#note, text);
-    this.#note.hidden = false;
   }
 
   #resized(size: Size, pixel_ratio: number): void {
@@ -237,7 +232,8 @@ export class Pane {
     } else if (picked.x_px >= 0) { // it is on the island
       const places = this.tool.tool !== "remove", problem = await this.tool.use(picked);
       if (problem !== "") {
-        this.#options.notify(problem);
+        const holds = (): boolean => this.tool.problem() === problem;
+        this.#options.notify(problem, holds() ? holds : undefined); // otherwise the server has refused it
       } else if (places) {
         this.#options.on_placed?.();
       }

@@ -1,5 +1,5 @@
 // PaneAreas: the shown worlds, one or two next to each other, and which of them has the focus.
-import {link_texts} from "../texts/pane";
+import {link_texts, pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {Server} from "../world/server";
@@ -16,7 +16,7 @@ export interface PaneAreasOptions extends
 }
 
 export class PaneAreas {
-  readonly element = h("main", {class: "worlds", id: "worlds", tabindex: -1});
+  readonly element = h("main", {class: "worlds", id: "worlds", tabindex: -1, "aria-label": pane_texts.shown});
   readonly all: PaneArea[] = [];
   #focused = 0;
   #last_pane = -1;
@@ -89,12 +89,14 @@ export class PaneAreas {
   /** Makes both views move together, or each by itself. */
   toggle_link(): void {
     if (!this.other) {
-      this.#options.notify(link_texts.one_world);
+      this.#options.notify(link_texts.one_world, () => this.other === null);
       return;
     }
     this.#linked.toggle(this.focused.pane.view);
     this.#refresh_heads();
-    this.#options.notify(this.#linked.is_on ? link_texts.linked : link_texts.unlinked);
+    const {is_on} = this.#linked;
+    this.#options.notify(
+      is_on ? link_texts.linked : link_texts.unlinked, () => this.other !== null && this.#linked.is_on === is_on);
   }
 
   close(area: PaneArea): void {

@@ -63,12 +63,6 @@ export class FamilyChoices {
                                                         {kind: "nothing"};
   }
 
-  /** What the choices are, as a key. */
-  get key(): string {
-    const {both_parents, generations, order} = this.form;
-    return [both_parents, generations, order, this.#colours.value].join("/");
-  }
-
   set_genes(names: readonly string[]): void {
     set_options(
       this.#colours,

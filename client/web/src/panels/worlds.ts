@@ -64,7 +64,8 @@ export class WorldsPanel implements Panel {
         this.#fork_error);
     this.#islands = new IslandsTable(context, () => this.element.hidden || this.refresh());
     this.element =
-      h("div", {class: "panel panel-worlds"}, h("table", {class: "table"}, table_head(texts.headings, 2), this.#worlds),
+      h("div", {class: "panel panel-worlds"},
+        h("table", {class: "table", "aria-label": texts.table}, table_head(texts.headings, 2), this.#worlds),
         h("div", {class: "row"}, this.#create, this.#fork, this.#remove), this.#why, this.#confirm, this.#fork_form,
         this.#islands.element);
   }
@@ -136,7 +137,9 @@ export class WorldsPanel implements Panel {
   #ask_fork(): void {
     const world = this.#context.world(), why = this.#context.server.why_not("fork_world");
     if (why || !world.snapshot) {
-      this.#context.notify(why || common_texts.no_world);
+      this.#context.notify(
+        why || common_texts.no_world,
+        () => why === "" ? !this.#context.world().snapshot : this.#context.server.why_not("fork_world") === why);
       return;
     }
     set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.feed.tick));

@@ -1,7 +1,7 @@
 // Description: what the last frame showed, for legends and hints. It is replaced only after a change.
 import type {Drawing, PopulationColumns} from "../core/messages";
 import type {Colouring} from "./colouring";
-import type {Painter, Scene} from "./scene";
+import type {Scene} from "./scene";
 
 export class Description {
   /** Null before the first frame with a snapshot. */
@@ -9,9 +9,8 @@ export class Description {
   #key = "";
 
   /** by_lineage: the population whose lineages are shown. */
-  update(
-    scene: Scene, pointed_at: Drawing["pointed_at"], renderer: Painter["kind"], colouring: Colouring,
-    by_lineage: PopulationColumns|null): void {
+  update(scene: Scene, pointed_at: Drawing["pointed_at"], colouring: Colouring, by_lineage: PopulationColumns|null):
+    void {
     const {at, density, density_scale, health_max, look, shows} = scene;
     const key = [
       shows,
@@ -32,7 +31,6 @@ export class Description {
     }
     this.#key = key;
     this.drawing = {
-      renderer,
       shows,
       density: density_scale === null ? null : {cell_px: density.cell_px, most: density_scale.high},
       health_max,

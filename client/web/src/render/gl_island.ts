@@ -9,7 +9,6 @@ import {GlMinimap} from "./gl_minimap";
 import {GlOverlays, overlay_steps} from "./gl_overlays";
 import {Cells, GlShapes, Projection, Table} from "./gl_shapes";
 import type {GlText} from "./gl_text";
-import {label_height} from "./glyphs";
 import {KeptBoxes, Points, with_room} from "./interpolator";
 import {Colour, ScaleTable, ShapeStyle} from "./look";
 import {
@@ -61,9 +60,6 @@ class Filled {
 }
 
 export class GlIsland implements Painter {
-  readonly kind = "webgl2";
-  readonly organisms_max = Infinity;
-  readonly label_height = label_height;
   readonly #shapes: GlShapes;
   readonly #text: GlText;
   readonly #tables: {

@@ -57,16 +57,6 @@ export class Points {
       }
     }
   }
-
-  copy(other: Points): void {
-    this.count = this.whole = other.whole;
-    this.id = with_room(this.id, this.whole);
-    this.x = with_room(this.x, this.whole);
-    this.y = with_room(this.y, this.whole);
-    this.id.set(other.id.subarray(0, this.whole));
-    this.x.set(other.x.subarray(0, this.whole));
-    this.y.set(other.y.subarray(0, this.whole));
-  }
 }
 
 export class KeptBoxes {
@@ -179,10 +169,6 @@ export class Interpolator {
   #spare = new KeptSnapshot();
   #arrived_ms = 0;
   #glide_ms = 0;
-
-  get has_snapshot(): boolean {
-    return this.latest.info !== null;
-  }
 
   /** Adds a snapshot. It is not interpolated if it belongs to another run or generation than the one before, or to an
    *  earlier tick. A snapshot of the same tick, with another region or level of detail, replaces the latest. */

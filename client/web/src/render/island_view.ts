@@ -107,7 +107,7 @@ export class IslandView {
     const scene = this.#scene(camera, blend, painter);
     painter.draw(scene);
     const by_lineage = this.settings.look.colour_by === "lineage" ? this.#current_population() : null;
-    this.#description.update(scene, this.#what_is_pointed_at(scene), painter.kind, this.#colouring, by_lineage);
+    this.#description.update(scene, this.#what_is_pointed_at(scene), this.#colouring, by_lineage);
   }
 
   /** The camera of the last frame; differs from the one that was set while it follows an organism. Null before the
@@ -173,8 +173,7 @@ export class IslandView {
   #wants_density(camera: Camera): boolean {
     const {look, place} = this.settings, {latest} = this.island.at;
     const count = this.island.organism_count;
-    const is_too_many = (this.painter?.organisms_max ?? Infinity) < count ||
-      (too_small_to_see(camera) && too_many_for_dots(camera, place, latest.info!, count));
+    const is_too_many = too_small_to_see(camera) && too_many_for_dots(camera, place, latest.info!, count);
     return look.density && look.colour_by === "" && is_too_many;
   }
 

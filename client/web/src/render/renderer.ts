@@ -1,12 +1,10 @@
-// Renderer: draws one pane: one island, or all islands of a world as tiles, with WebGL2, or with Canvas2D where WebGL2
-// is missing.
+// Renderer: draws one pane with WebGL2: one island, or all islands of a world as tiles.
 //
 // The worker owns it, calls add() after each decoded snapshot and draw() from requestAnimationFrame while needs_frame()
 // is true, and acknowledges a snapshot after the draw() that follows it.
 import type {Look} from "../core/messages";
 import type {Snapshot, SnapshotInfo} from "../core/snapshot";
 import {pane_frame, type Place, type Size} from "./camera";
-import {FallbackSurface} from "./fallback";
 import {GlSurface} from "./gl_surface";
 import {default_settings, IslandView, type ViewSettings} from "./island_view";
 import {colours_of, default_look} from "./look";
@@ -16,12 +14,8 @@ import {island_place, tile_places} from "./tiles";
 /** The surface of a canvas; on_restored: called with another one after the browser has restored a lost context. */
 function surface_of(canvas: OffscreenCanvas, on_restored: (surface: Surface|null) => void): Surface {
   const gl = canvas.getContext("webgl2", {alpha: false, antialias: false, depth: false, stencil: false});
-  if (gl === null) {
-    const context = canvas.getContext("2d", {alpha: false});
-    if (context === null) {
-      throw new Error("this browser offers neither WebGL2 nor Canvas2D in a worker");
-    }
-    return new FallbackSurface(context);
+  if (gl === null) { // the page gives no canvas to the worker if WebGL2 is missing
+    throw new Error("this browser offers no WebGL2 in a worker");
   }
   canvas.addEventListener("webglcontextlost", (event) => {
     event.preventDefault(); // asks the browser to restore the context

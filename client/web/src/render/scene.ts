@@ -1,5 +1,4 @@
-// Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland (WebGL2) or Fallback
-// (Canvas2D) draws it.
+// Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland draws it.
 import type {Camera, Look, PopulationColumns} from "../core/messages";
 import type {MinimapPlace, Place, Rectangle, Size} from "./camera";
 import type {DensityGrid} from "./density";
@@ -35,10 +34,6 @@ export interface Scene {
 }
 
 export interface Painter {
-  readonly kind: "webgl2"|"canvas2d";
-  /** More visible organisms are drawn as densities. */
-  readonly organisms_max: number;
-  readonly label_height: number; // CSS pixels
   /** The width of a label's text in CSS pixels. */
   measure(text: string, ratio: number): number;
   /** Draws into scene.place. */

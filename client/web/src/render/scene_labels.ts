@@ -3,6 +3,7 @@
 import {steps_per_px} from "../core/snapshot";
 
 import {visible_part} from "./camera";
+import {label_height} from "./glyphs";
 
 import {healthiest, type Label, place_labels} from "./labels";
 import type {ShapeStyle} from "./look";
@@ -15,7 +16,7 @@ function radius_with_arc(radius: number, {form, edge_pixels}: ShapeStyle): numbe
 }
 
 /** The rows of the visible organisms, if there is room for all their labels; otherwise null. */
-function readable_rows({at, blend, camera, place, styles}: Scene, label_height: number): number[]|null {
+function readable_rows({at, blend, camera, place, styles}: Scene): number[]|null {
   if (!labels_are_readable(camera, place, 0, styles.label_zoom_min, label_height)) {
     return null;
   }
@@ -40,7 +41,7 @@ export function labels_of(scene: Scene, painter: Painter): Label[] {
     }
   }
   const inside = inside_walls(scene, {width: latest.info!.width_px, height: latest.info!.height_px});
-  const labels = (readable_rows(scene, painter.label_height) ?? named).map((row): Label => {
+  const labels = (readable_rows(scene) ?? named).map((row): Label => {
     const health = String(shown_health(latest.health[row]!));
     const text = named.includes(row) ? `#${latest.id[row]!} ${health}` : health;
     return {
@@ -53,6 +54,6 @@ export function labels_of(scene: Scene, painter: Painter): Label[] {
       top: 0,
     };
   });
-  place_labels(labels, painter.label_height, inside);
+  place_labels(labels, label_height, inside);
   return labels;
 }

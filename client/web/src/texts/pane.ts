@@ -8,9 +8,9 @@ function organisms(count: number): string {
 
 export const pane_texts = {
   kind: "island",
-  no_offscreen_canvas: "This browser cannot draw the island, because it has no OffscreenCanvas. " +
-    "Use a current version of Chrome, Edge, Firefox or Safari.",
-  no_webgl: "This browser has no WebGL2: the island is drawn in less detail, and large populations as densities.",
+  shown: "Shown worlds",
+  no_webgl: "This browser cannot draw the island, because it has no WebGL 2, or WebGL 2 is switched off. " +
+    "The panels show the world as usual.",
   no_world: "No world is shown",
   island: (island: number, world: string, alive: string) =>
     `Island ${island} of world ${world}${alive}. Arrow keys move the view, 0 shows the whole island.`,

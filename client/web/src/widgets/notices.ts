@@ -12,11 +12,28 @@ export interface Action {
   act: () => void;
 }
 
+/** Shows a message.
+ *
+ *  holds   whether what the message states is still true; absent: the message reports something that has happened
+ *  action  a button of the message */
+export type Notify = (text: string, holds?: () => boolean, action?: Action) => void;
+
 export class Notices {
   readonly element = h("div", {class: "notices", role: "status", "aria-live": "polite"});
+  readonly #conditions = new Map<Element, () => boolean>(); // by notice
 
-  /** Shows a message. The same message is not shown twice at a time. action: a button of the message. */
-  show(text: string, action?: Action): void {
+  /** Removes the messages about what is not true any more. */
+  refresh(): void {
+    for (const [notice, holds] of this.#conditions) {
+      if (!notice.isConnected || !holds()) {
+        notice.remove();
+        this.#conditions.delete(notice);
+      }
+    }
+  }
+
+  /** Shows a message; see Notify. The same message is not shown twice at a time. */
+  show(text: string, holds?: () => boolean, action?: Action): void {
     for (const notice of [...this.element.children]) {
       if (notice.firstChild?.textContent === text) {
         notice.remove();
@@ -39,6 +56,9 @@ export class Notices {
       },
         "✕"));
     this.element.append(notice);
+    if (holds !== undefined) {
+      this.#conditions.set(notice, holds);
+    }
     while (this.element.children.length > notices_max) {
       this.element.firstElementChild!.remove();
     }

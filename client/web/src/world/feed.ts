@@ -110,12 +110,6 @@ export class SnapshotFeed {
     }
   }
 
-  /** Calls `listener` after each snapshot that the worker reports, at most 20 times a second. */
-  on_snapshot(listener: (snapshot: SnapshotInfo) => void): () => void {
-    this.#listeners.add(listener);
-    return () => this.#listeners.delete(listener);
-  }
-
   /** Resolves when a snapshot of the shown world is drawn, or after drawn_wait_ms.
    *
    *  tick  of the snapshot, unless the world runs; null: any */

@@ -168,10 +168,6 @@ export class Server {
     return performance.now() - (this.#sent_ms.get(`${kind} ${world}`) ?? -Infinity) < own_event_ms;
   }
 
-  is_own_replay(world: string): boolean {
-    return this.#replays.has(world);
-  }
-
   world(name: string): KnownWorld|null {
     return this.worlds.find((world) => world.name === name) ?? null;
   }
