@@ -44,7 +44,12 @@ class Modes(Case):
         self.browser.wait("evod.app.world().snapshot?.generation === 1", "the first generation")
 
     def tool(self, name):
-        return lambda: self.browser.click(self.browser.button(name, ".tools"))
+        def choose():
+            if self.browser.value("evod.app.world().selection.id !== null"):
+                self.browser.press(name, ".tools")  # as soon as it can act
+            else:
+                self.browser.click(self.browser.button(name, ".tools"))
+        return choose
 
     def escape(self):
         self.key(Keys.ESCAPE)
@@ -57,7 +62,8 @@ class Modes(Case):
                 ("follow", lambda: self.key("l"), lambda: self.key("l")),
                 ("replay", self.replay, self.live),
                 ("replay of an earlier generation", self.earlier, self.live),
-                ("follow within a replay", lambda: (self.replay(), self.key("l")), lambda: (self.key("l"), self.live())),
+                ("follow within a replay", lambda: (self.replay(), self.key("l")),
+                 lambda: (self.key("l"), self.live())),
                 ("tiles", lambda: self.key("i"), lambda: self.key("i")),
                 ("organism panel", lambda: panel("Organism"), lambda: panel("Worlds")),
                 ("glass box", lambda: panel("Glass box"), lambda: panel("Worlds")),

@@ -5,7 +5,7 @@ import unittest
 
 from page_case import Case, SHOWN_PANELS
 
-SIZES = ((1280, 720), (640, 360), (426, 240), (320, 256))  # CSS pixels of 1280 × 720 at 100, 200 and 300 %, and 1280 × 1024 at 400 %
+SIZES = ((1280, 720), (640, 360), (426, 240), (320, 256))  # CSS pixels at 100, 200, 300 and 400 % zoom
 WORLD_LEAST = 120  # CSS pixels
 # The elements that scroll sideways, or are wider than the window. A table or a tab list may scroll by itself.
 WIDE = """(() => {
