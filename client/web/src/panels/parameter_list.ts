@@ -3,7 +3,7 @@ import type {ParameterDescription, ParameterValue} from "../core/protocol";
 import {effect_texts, parameter_texts as texts, parameters_texts} from "../texts/parameters";
 import {set_enabled, set_value} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import type {ParameterEdits} from "../world/parameter_edits";
+import {type EditedParameter, type ParameterEdits, planned_values} from "../world/parameter_edits";
 import {
   allowed_text,
   grouped,
@@ -70,7 +70,7 @@ export class ParameterControl {
   }
 
   update(may: boolean, is_refused: boolean): void {
-    const shown = this.#context.edits.shown(this.#parameter), title = may ? "" : this.#context.why_not;
+    const shown = this.#context.edits.parameters[this.#parameter]!.shown, title = may ? "" : this.#context.why_not;
     for (const control of [this.main, ...(this.slider ? [this.slider] : [])]) {
       set_enabled(control, may, title);
       control.setAttribute("aria-invalid", String(is_refused || this.typing_problem !== ""));
@@ -206,7 +206,7 @@ export class ParameterControl {
     if (up || down) {
       event.preventDefault();
       event.stopPropagation();
-      const number = number_of(this.#context.edits.shown(this.#parameter));
+      const number = number_of(this.#context.edits.parameters[this.#parameter]!.shown);
       this.set(value_of(this.#about, stepped(this.#about, number, up, event.key.startsWith("Page"))));
     }
   }
@@ -273,11 +273,10 @@ export class ParameterRow {
   }
 
   update(may: boolean): void {
-    const {edits} = this.#context, i = this.parameter, violation = edits.violation(i);
+    const {is_default, violation, edit} = this.#state;
     this.#control.update(may, violation !== null);
-    this.element.classList.toggle("parameter-edited", edits.is_edited(i));
+    this.element.classList.toggle("parameter-edited", edit !== null);
     this.element.classList.toggle("parameter-refused", violation !== null || this.typing_problem !== "");
-    const is_default = edits.is_default(i);
     set_text(this.#mark, is_default ? "" : " •");
     this.#default_button.hidden = is_default || !may;
     set_text(this.#remarks, this.#remarks_text());
@@ -299,14 +298,18 @@ export class ParameterRow {
     this.#control.main.focus();
   }
 
+  get #state(): EditedParameter {
+    return this.#context.edits.parameters[this.parameter]!;
+  }
+
   #remarks_text(): string {
-    const {edits} = this.#context, i = this.parameter;
-    const client = edits.client_of_last_change(i), planned = edits.planned_values(i);
+    const {edit, pending, requested, value, shown, client_of_last_change: client} = this.#state;
+    const planned = planned_values(this.#context.edits, this.#about.name);
     return [
-      this.#unit(edits.shown(i)),
-      edits.is_edited(i)    ? texts.was(value_text(edits.requested_value(i))) :
-        edits.is_pending(i) ? texts.still(value_text(edits.current_value(i))) :
-                              "",
+      this.#unit(shown),
+      edit !== null      ? texts.was(value_text(requested)) :
+        pending !== null ? texts.still(value_text(value)) :
+                           "",
       client === "" ? "" : texts.set_by(client),
       planned.length === 0 ? "" : texts.planned(planned),
     ].filter((part) => part !== "")
@@ -327,11 +330,10 @@ export class ParameterRow {
     if (this.#help.hidden) {
       return;
     }
-    const {edits} = this.#context, about = this.#about, i = this.parameter;
-    const current = value_text(edits.current_value(i));
+    const about = this.#about, {pending, requested, value} = this.#state, current = value_text(value);
     const facts = texts.facts(
       allowed_text(about) + (about.unit ? ` ${about.unit}` : ""), value_text(about.default_value ?? {}),
-      edits.is_pending(i) ? texts.now_and_then(current, value_text(edits.requested_value(i))) : current);
+      pending !== null ? texts.now_and_then(current, value_text(requested)) : current);
     if (this.#described === facts) {
       return;
     }
@@ -406,7 +408,7 @@ export class ParameterList {
     const {edits} = this.#context;
     const rejected = this.#groups.filter(({is_extra}) => !is_extra)
                        .flatMap((group) => group.rows.map((row) => ({group, row})))
-                       .filter(({row}) => edits.violation(row.parameter) !== null);
+                       .filter(({row}) => edits.parameters[row.parameter]!.violation !== null);
     for (const {group, row} of rejected) {
       group.element.hidden = row.element.hidden = false;
       group.element.open = true;

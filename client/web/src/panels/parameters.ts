@@ -232,7 +232,7 @@ export class ParametersPanel implements Panel {
   }
 
   #discard(): void {
-    this.edits.revert_all();
+    this.edits.revert();
     this.#list.forget();
     this.touch();
   }
