@@ -9,6 +9,7 @@ import {freezer_texts as texts} from "../texts/freezer";
 import {number_in} from "../texts/numbers";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {Question, hint, labelled, row} from "../widgets/form";
 import {save_file} from "../widgets/files";
 import {gene_problem, name_characters_max} from "../world/names";
 import type {PanelContext} from "../world/panel_context";
@@ -40,8 +41,7 @@ export class FreezerChoice {
   constructor(on_change: () => void) {
     this.#on_change = on_change;
     this.element =
-      h("div", {class: "row"}, label_of(texts.island, this.#island), this.#island,
-        label_of(texts.organism, this.#organism), this.#organism);
+      row(labelled(texts.island, this.#island), this.#island, labelled(texts.organism, this.#organism), this.#organism);
   }
 
   show(shown: ShownEntry): void {
@@ -70,12 +70,6 @@ export class FreezerChoice {
   #field(id: string): HTMLInputElement {
     return h("input", {class: "field freezer-number", inputmode: "numeric", id, oninput: () => this.#on_change()});
   }
-}
-
-function label_of(text: string, field: HTMLElement): HTMLElement {
-  const label = h("label", {}, text);
-  label.htmlFor = field.id;
-  return label;
 }
 
 const copies_max = 100;
@@ -109,8 +103,8 @@ export class FreezerPlacing {
     this.#by_clicks = guarded_button(texts.place, context.notify, () => this.#place_by_clicks());
     this.#scatter = guarded_button(texts.scatter, context.notify, () => void this.#place_anywhere());
     this.element =
-      h("div", {class: "panel"}, h("div", {class: "row"}, this.#by_clicks),
-        h("div", {class: "row"}, h("label", {class: "row"}, this.#copies, texts.copies), this.#scatter));
+      h("div", {class: "panel"}, row(this.#by_clicks),
+        row(h("label", {class: "row"}, this.#copies, texts.copies), this.#scatter));
   }
 
   /** name, gene_names: of the entry */
@@ -267,7 +261,7 @@ function further_genes(
     if (details.open && details.children.length === 1) {
       details.append(table(population, genes.slice(0, further_genes_max), body_genes.length, other));
       if (genes.length > further_genes_max) {
-        details.append(h("p", {class: "hint"}, texts.genes_left_out(genes.length - further_genes_max)));
+        details.append(hint(texts.genes_left_out(genes.length - further_genes_max)));
       }
     }
   };
@@ -302,9 +296,12 @@ export class FreezerEntry {
     spellcheck: "false",
     autocomplete: "off"
   });
-  readonly #rename_form = this.#made_rename_form();
+  readonly #rename_form = new Question(
+    {before: [], field: this.#new_name}, texts.do_rename, () => void this.#act(() => this.#do_rename()),
+    () => this.#rename);
   readonly #question = h("p", {});
-  readonly #confirm = this.#made_question();
+  readonly #confirm = new Question(
+    {before: [this.#question]}, texts.do_remove, () => void this.#act(() => this.#do_remove()), () => this.#remove);
   readonly #wrong = h("p", {class: "error", role: "alert"}); // about the chosen organism
   readonly #problem = h("p", {class: "error", role: "alert"}); // of the last action
   #shown: ShownEntry|null = null;
@@ -320,8 +317,8 @@ export class FreezerEntry {
       () => void context.attempt(() => new_world_dialog(context).open(this.#shown?.kept.name ?? "")));
     this.element =
       h("section", {class: "panel freezer-entry", hidden: true}, this.#title,
-        h("div", {class: "row"}, this.#create, this.#download, this.#rename, this.#remove), this.#rename_form,
-        this.#confirm, this.#choice.element, this.#wrong, this.#placing.element, this.#problem, this.#genes.element);
+        row(this.#create, this.#download, this.#rename, this.#remove), this.#rename_form.element, this.#confirm.element,
+        this.#choice.element, this.#wrong, this.#placing.element, this.#problem, this.#genes.element);
   }
 
   show(shown: ShownEntry|null): void {
@@ -331,7 +328,7 @@ export class FreezerEntry {
     }
     this.#shown = shown;
     this.element.hidden = shown === null;
-    this.#rename_form.hidden = this.#confirm.hidden = true;
+    this.#rename_form.element.hidden = this.#confirm.element.hidden = true;
     set_text(this.#problem, "");
     if (shown) {
       set_text(this.#title, shown.kept.name);
@@ -365,52 +362,22 @@ export class FreezerEntry {
     return typeof organism === "string" ? organism : {organism, gene_names: this.#shown!.kept.gene_names};
   }
 
-  #made_rename_form(): HTMLElement {
-    const form: HTMLElement = h(
-      "form", {
-        class: "confirm",
-        hidden: true,
-        onsubmit: (event: Event) => {
-          event.preventDefault();
-          void this.#act(() => this.#do_rename());
-        }
-      },
-      h("div", {class: "row"}, this.#new_name,
-        h("button", {type: "submit", class: "button button-primary"}, texts.do_rename),
-        h("button", {type: "button", class: "button", onclick: () => close(form, this.#rename)}, common_texts.cancel)));
-    return form;
-  }
-
-  #made_question(): HTMLElement {
-    const remove = (): void => void this.#act(() => this.#do_remove());
-    const question: HTMLElement =
-      h("div", {class: "confirm", hidden: true}, this.#question,
-        h("div", {class: "row"},
-          h("button", {type: "button", class: "button button-danger", onclick: remove}, texts.do_remove),
-          h("button", {type: "button", class: "button", onclick: () => close(question, this.#remove)},
-            common_texts.cancel)));
-    return question;
-  }
-
   #ask_rename(): void {
-    this.#confirm.hidden = true;
-    this.#rename_form.hidden = false;
+    this.#confirm.element.hidden = true;
     this.#new_name.value = this.#shown!.kept.name;
-    this.#new_name.select();
-    this.#new_name.focus();
+    this.#rename_form.open();
   }
 
   async #do_rename(): Promise<void> {
     const name = await this.#freezer.rename(this.#shown!.kept.name, this.#new_name.value.trim());
-    close(this.#rename_form, this.#rename);
+    this.#rename_form.close();
     this.#choose(name);
   }
 
   #ask_remove(): void {
     set_text(this.#question, texts.ask_remove(this.#shown!.kept.name));
-    this.#rename_form.hidden = true;
-    this.#confirm.hidden = false;
-    this.#confirm.querySelector("button")!.focus();
+    this.#rename_form.element.hidden = true;
+    this.#confirm.open();
   }
 
   async #do_remove(): Promise<void> {
@@ -430,9 +397,4 @@ export class FreezerEntry {
 
 function save({kept, population}: ShownEntry): void {
   save_file(new Blob([population_text(population)], {type: "text/csv"}), `${kept.name}.csv`);
-}
-
-function close(form: HTMLElement, button: HTMLElement): void {
-  form.hidden = true;
-  button.focus();
 }

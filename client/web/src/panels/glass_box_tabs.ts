@@ -10,6 +10,7 @@ import type {GenerationStatistics} from "../core/protocol";
 import {glass_box_texts} from "../texts/glass_box";
 import {three_digits, with_separators} from "../texts/numbers";
 import {h, set_text, svg} from "../widgets/dom";
+import {hint} from "../widgets/form";
 import type {ViewedWorld} from "../world/world";
 import type {BetControls} from "./glass_box_bets";
 import {draw_copies} from "./glass_box_drawings";
@@ -42,7 +43,7 @@ export function gene_parts(generation: number, gene_names: readonly string[], ne
   const most = Math.max(1e-12, ...shown.flatMap((account) => parts.map((part) => Math.abs(account[part]))));
   return [
     h("p", {}, glass_box_texts.account(generation)),
-    ...(is_limited ? [h("p", {class: "hint"}, glass_box_texts.account_limited(shown.length, accounts.length))] : []),
+    ...(is_limited ? [hint(glass_box_texts.account_limited(shown.length, accounts.length))] : []),
     ...shown.map((account) => draw_account(account, is_limited ? null : most)),
   ];
 }
@@ -52,8 +53,7 @@ export function gene_parts(generation: number, gene_names: readonly string[], ne
 function draw_account(account: GeneChangeOfMean, most: number|null): HTMLElement {
   const end = most ?? Math.max(1e-12, ...parts.map((part) => Math.abs(account[part])));
   return h(
-    "section", {class: "organism-part account"}, h("p", {}, account_text(account)),
-    h("p", {class: "hint"}, reason_text(account)),
+    "section", {class: "organism-part account"}, h("p", {}, account_text(account)), hint(reason_text(account)),
     h("div", {class: "account-bars", "aria-hidden": "true"}, ...parts.flatMap((part) => {
       const value = account[part], width = Math.abs(value) / end * 50;
       return [
@@ -75,7 +75,7 @@ export function theory_parts(
   if (!comparison) {
     return [
       law,
-      h("p", {class: "hint"},
+      hint(
         record.contender_count > rows_kept_max ?
           glass_box_texts.too_many(rows_kept_max) :
           glass_box_texts.received(record.contenders.length, record.contender_count))
@@ -104,7 +104,7 @@ function prediction_part(prediction: Prediction, complete: boolean): HTMLElement
       observed === null ? glass_box_texts.expected(name, expected) :
                           glass_box_texts.expected_and_observed(name, expected, glass_box_texts.value(observed, unit))),
     complete && off !== null && h("p", {}, glass_box_texts.standard_errors(off)),
-    h("p", {class: "hint"}, glass_box_texts.source(sentence, source)));
+    hint(glass_box_texts.source(sentence, source)));
 }
 
 function organism_table(comparison: Comparison, copies: readonly number[], complete: boolean): HTMLElement {
@@ -123,7 +123,7 @@ function organism_table(comparison: Comparison, copies: readonly number[], compl
     h("div", {class: "glass-table"},
       h("table", {class: "table"}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...rows))),
     comparison.organisms.length > table_rows_max &&
-      h("p", {class: "hint"}, glass_box_texts.table_limited(table_rows_max, comparison.organisms.length)));
+      hint(glass_box_texts.table_limited(table_rows_max, comparison.organisms.length)));
 }
 
 const tabs = ["step", "theory", "genes"] as const;

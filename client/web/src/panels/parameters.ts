@@ -10,6 +10,7 @@ import {undo_texts} from "../texts/undo";
 import {actor_text} from "../texts/users";
 import {set_enabled} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {button, check, row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import {type When, when_text} from "../world/parameter_edits";
 import {value_text} from "../world/parameters";
@@ -110,14 +111,7 @@ export class PlannedChanges {
       planned_texts.change(when_text(change), (change.parameters ?? []).map(assigned), actor_text(change.by));
     return h(
       "li", {}, h("span", {class: "grow"}, text),
-      h("button", {
-        class: "button",
-        type: "button",
-        disabled: why_not !== "",
-        title: why_not || null,
-        onclick: () => this.#cancel(change)
-      },
-        common_texts.cancel));
+      button(common_texts.cancel, () => this.#cancel(change), {disabled: why_not !== "", title: why_not || null}));
   }
 }
 
@@ -135,15 +129,11 @@ export class ParametersPanel implements Panel {
   readonly #list: ParameterList;
   readonly #when: ParameterWhen;
   readonly #planned: PlannedChanges;
-  readonly #apply_button =
-    h("button", {class: "button button-primary", type: "button", onclick: () => this.#apply()}, parameters_texts.apply);
+  readonly #apply_button = button(parameters_texts.apply, () => this.#apply(), {class: "button button-primary"});
   readonly #discard_button =
-    h("button", {class: "button", type: "button", title: parameters_texts.discard_help, onclick: () => this.#discard()},
-      parameters_texts.discard);
-  readonly #undo_button =
-    h("button", {class: "button", type: "button", onclick: () => void undo(this.#context, "undo")}, undo_texts.undo);
-  readonly #redo_button =
-    h("button", {class: "button", type: "button", onclick: () => void undo(this.#context, "redo")}, undo_texts.redo);
+    button(parameters_texts.discard, () => this.#discard(), {title: parameters_texts.discard_help});
+  readonly #undo_button = button(undo_texts.undo, () => void undo(this.#context, "undo"));
+  readonly #redo_button = button(undo_texts.redo, () => void undo(this.#context, "redo"));
   readonly #at_once = h("input", {type: "checkbox", onchange: () => this.touch()});
   readonly #reason = h("p", {class: "warning"});
   readonly #problem = h("p", {class: "error", role: "alert"});
@@ -165,10 +155,9 @@ export class ParametersPanel implements Panel {
     this.element =
       h("div", {class: "panel parameters"}, this.#reason,
         h("div", {class: "parameters-head"},
-          h("div", {class: "row"}, this.#apply_button, this.#discard_button, this.#undo_button, this.#redo_button),
-          this.#problem, this.#status),
-        h("div", {class: "row"}, this.#when.element,
-          h("label", {class: "check", title: parameters_texts.at_once_help}, this.#at_once, parameters_texts.at_once)),
+          row(this.#apply_button, this.#discard_button, this.#undo_button, this.#redo_button), this.#problem,
+          this.#status),
+        row(this.#when.element, check(this.#at_once, parameters_texts.at_once, parameters_texts.at_once_help)),
         this.#planned.element, this.#list.search, this.#list.element, this.#list.nothing_found);
     context.server.on_event((event) => {
       this.#changed = this.#exchange.take_event(event) || this.#changed;

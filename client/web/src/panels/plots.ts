@@ -8,6 +8,7 @@ import {Plot} from "../plots/plot";
 import {plot_texts} from "../texts/plot";
 import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {h, set_text} from "../widgets/dom";
+import {row} from "../widgets/form";
 import {accept_drops, save_file} from "../widgets/files";
 import type {Panel, PanelContext} from "../world/panel_context";
 import {CompareChoice, GeneChoice, GeneHistogram, QuantityTabs, ScopeChoice} from "./plots_choices";
@@ -51,8 +52,8 @@ export class PlotsPanel implements Panel {
     };
     this.element =
       h("div", {class: "panel plots"}, this.#compare.element, this.#scope.element, this.#tabs.element, this.#content,
-        h("div", {class: "row"}, button(texts.fit, fit, texts.fit_help),
-          button(texts.save_csv, () => this.#save_csv(), texts.save_csv_help),
+        row(
+          button(texts.fit, fit, texts.fit_help), button(texts.save_csv, () => this.#save_csv(), texts.save_csv_help),
           button(texts.save_png, () => void this.#save_png(), texts.save_png_help(image_width, image_height)),
           this.#known));
     accept_drops(this.element, (files) => this.#compare.take(files));

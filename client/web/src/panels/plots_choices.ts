@@ -9,6 +9,7 @@ import {plot_texts} from "../texts/plot";
 import {plots_panel_texts as texts, quantity_texts} from "../texts/plots_panel";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {button, row} from "../widgets/form";
 import {open_button} from "../widgets/files";
 import type {Server} from "../world/server";
 import type {ViewedWorld} from "../world/world";
@@ -88,7 +89,7 @@ export class ScopeChoice {
           h("option", {value: window, selected: window === window_default},
             window === 1 ? texts.each_generation : plot_texts.mean_of(window))));
     this.#island = h("select", {class: "field", "aria-label": texts.island, hidden: true, onchange: on_change});
-    this.element = h("div", {class: "row"}, this.#smooth, this.#island);
+    this.element = row(this.#smooth, this.#island);
   }
 
   /** Generations of the running mean; 1: none. */
@@ -120,7 +121,7 @@ export class CompareChoice {
   readonly #run =
     h("select",
       {class: "field grow", "aria-label": texts.run, onchange: () => this.#comparison.choose_run(this.#run_index())});
-  readonly #remove = h("button", {class: "button", type: "button", onclick: () => this.#remove_file()}, texts.remove);
+  readonly #remove = button(texts.remove, () => this.#remove_file());
   readonly #file_row = h("div", {class: "row plots-file", hidden: true}, this.#file_name, this.#run, this.#remove);
   readonly #problem = h("p", {class: "error", role: "alert"});
 
