@@ -10,6 +10,7 @@ import type {GenerationStatistics} from "../core/protocol";
 import {glass_box_texts} from "../texts/glass_box";
 import {three_digits, with_separators} from "../texts/numbers";
 import {h, set_text, svg} from "../widgets/dom";
+import {svg_line, svg_rect} from "../widgets/svg";
 import {hint} from "../widgets/form";
 import type {ViewedWorld} from "../world/world";
 import type {BetControls} from "./glass_box_bets";
@@ -60,8 +61,7 @@ function draw_account(account: GeneChangeOfMean, most: number|null): HTMLElement
         h("span", {class: "hint"}, glass_box_texts.account_parts[part]),
         svg(
           "svg", {class: "account-bar", viewBox: "0 0 100 10", preserveAspectRatio: "none"},
-          svg("rect", {class: part, x: value < 0 ? 50 - width : 50, y: 1, width, height: 8}),
-          svg("line", {class: "axis", x1: 50, x2: 50, y1: 0, y2: 10}))
+          svg_rect(part, [value < 0 ? 50 - width : 50, 1, width, 8]), svg_line("axis", [50, 0, 50, 10]))
       ];
     })));
 }
