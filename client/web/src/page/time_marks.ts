@@ -1,7 +1,7 @@
 // TimeMarks: what stands on the time line: labels of generations, and marks where parameters changed and where all
 // organisms died. They are rebuilt after a change, but not more often than every rebuild_ms.
 import type {GenerationStatistics} from "../core/protocol";
-import {marks_of} from "../plots/figures";
+import {marks_of} from "../plots/change_marks";
 import {with_separators} from "../texts/numbers";
 import {timeline_texts} from "../texts/timeline";
 import {h} from "../widgets/dom";

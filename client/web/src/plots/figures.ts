@@ -1,20 +1,9 @@
 // figures: the plots of one history, or of one history compared with another. Pure functions.
-import type {AppliedChange} from "../core/protocol";
 import {plot_texts} from "../texts/plot";
 import {figure_texts as texts} from "../texts/plots_panel";
-import {actor_text} from "../texts/users";
-import {values_text} from "../world/change_text";
 import type {AccountPart, Column, GenePart, HistoryTable, Island} from "./history_table";
 import {type Marks, type PlotContent, type Series, type SeriesColour, thickness_default} from "./plot_content";
 import {compare_dash, histogram, type Mark, type Numbers, range_of, running_mean} from "./plot_layout";
-
-export function marks_of(changes: readonly AppliedChange[]): (Mark&{label: string})[] {
-  return changes.map((change) => ({
-                       x: change.generation ?? 0,
-                       text: plot_texts.changed(change.generation ?? 0, values_text(change), actor_text(change.by)),
-                       label: values_text(change),
-                     }));
-}
 
 export type Quantity = "fitness"|"genes"|"selection"|"diversity"|"survivors"|"deaths"|"food";
 export const quantities: readonly Quantity[] =

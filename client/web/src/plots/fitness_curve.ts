@@ -2,7 +2,7 @@
 import {significant} from "../texts/numbers";
 import {plot_texts} from "../texts/plot";
 import type {ViewedWorld} from "../world/world";
-import {marks_of} from "./figures";
+import {marks_of} from "./change_marks";
 import {type Column, HistoryTable} from "./history_table";
 import {Plot} from "./plot";
 import type {Series, SeriesColour} from "./plot_content";
