@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const rules = await bundle("world/parameter_edits", "world/parameters");
+const rules = await bundle("world/parameter_edits", "world/parameter_values", "world/parameters", "world/slider_scale");
 
 const chance = { name: "mutation_chance", kind: "PARAMETER_KIND_REAL", unit: "chance", max: 1, default_value: { real: 0.15 }, help: "How often a gene mutates." };
 const count = { name: "food_count", kind: "PARAMETER_KIND_COUNT", unit: "items", max: 20_000_000, default_value: { count: 25 } };

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/change_marks", "plots/history_csv", "world/change_text", "core/csv", "plots/motion");
+const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv", "plots/motion");
 const shown = { min: 0, max: 100 };
 
 test("ticks are round and inside the range", () => {

@@ -1,22 +1,6 @@
 // Comparison: for each rank, the observed number of copies next to the number that the law of the selection method
 // expects. No DOM.
 import {type BreedingRecord, rank_of} from "./record";
-import type {Moment} from "./stepper";
-
-export interface Progress {
-  made: number; // picks
-  complete: boolean; // all were made
-}
-
-export function progress_of(record: BreedingRecord, moment: Moment): Progress {
-  const all = record.head?.pick_count ?? 0;
-  const made = moment.stage === "scaling" ? 0 : moment.stage === "picking" ? moment.index + 1 : all;
-  return {made, complete: moment.stage !== "scaling" && made >= all};
-}
-
-export function copies_so_far(record: BreedingRecord, comparison: Comparison, {made, complete}: Progress): number[] {
-  return complete ? comparison.copies : copies_after(record, made);
-}
 
 /** Each list is indexed by rank and has one entry per contender. */
 export interface Comparison {

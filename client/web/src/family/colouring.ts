@@ -1,7 +1,7 @@
 // Colouring: the colours of the organisms of a tree by lineage, fitness or gene, and what they mean. No DOM.
 import {Families, FamilyColours, no_founder} from "../render/families";
 import {css, ramp_at, unknown} from "../render/look";
-import type {GeneTable} from "./family_data";
+import type {GeneTable} from "./gene_table";
 import type {Ancestor} from "./lineage";
 import type {FamilyTree} from "./spot";
 import {founders_of} from "./tree";

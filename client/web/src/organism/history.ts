@@ -2,13 +2,6 @@
 // its offspring, and how often it and its parents were picked for breeding. No DOM.
 import type {PopulationColumns} from "../core/messages";
 import type {Brain, Breeding, Descendant, GetBreeding, OrganismInfo} from "../core/protocol";
-import {nice_step} from "../render/look";
-
-/** Returns the end of an axis that begins at 0 and contains `most`. */
-export function axis_end(most: number): number {
-  const step = nice_step(most / 5);
-  return step * Math.max(Math.ceil(most / step), 1);
-}
 
 export const health_points_max = 1024; // when reached, every second point is removed
 export const offspring_generation_max = 20_000; // of a larger next generation, the offspring are not searched

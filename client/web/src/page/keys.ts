@@ -7,7 +7,7 @@ import {Dialog} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
-import {undo, undo_verb_of} from "../world/undo";
+import {undo, undo_verb_of} from "../world/undo_command";
 import type {Column} from "./column";
 import type {PaneAreas} from "./pane_areas";
 import {toggle_replay} from "./run_bar";

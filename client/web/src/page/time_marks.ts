@@ -5,7 +5,7 @@ import {marks_of} from "../plots/change_marks";
 import {with_separators} from "../texts/numbers";
 import {timeline_texts} from "../texts/timeline";
 import {h} from "../widgets/dom";
-import {joined_marks, type JoinedMark, marked_generations, type TimeScale} from "../world/time_scale";
+import {type JoinedMark, joined_marks, marked_generations, type TimeScale} from "../world/time_scale";
 import type {ViewedWorld} from "../world/world";
 
 const label_room_px = 56; // between labels

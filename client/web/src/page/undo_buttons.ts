@@ -3,7 +3,7 @@ import {undo_texts} from "../texts/undo";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, svg} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
-import {undo} from "../world/undo";
+import {undo} from "../world/undo_command";
 
 const arrow = "M6 3L2.5 6.5L6 10M2.5 6.5h7a4 4 0 0 1 0 8H7";
 

@@ -1,52 +1,13 @@
 // The panels of the column, in the order of their tabs.
-import {panels_texts, panels_texts as texts} from "../texts/panels";
-import {h} from "../widgets/dom";
+import {panels_texts as texts} from "../texts/panels";
 import type {Panel, PanelContext} from "../world/panel_context";
+
 import {EventsPanel} from "./events";
+import {LazyPanel} from "./lazy";
 import {ParametersPanel} from "./parameters";
 import {RunPanel} from "./run";
 import {ViewPanel} from "./view";
 import {WorldsPanel} from "./worlds";
-
-/** A panel whose code is loaded when it is first shown, so that the page itself loads faster. */
-export class LazyPanel implements Panel {
-  readonly element = h("div", {class: "lazy-panel"});
-  #panel: Panel|null = null;
-  #loading = false;
-  #subject: {[key: string]: unknown}|null = null; // of a show() before the code was loaded
-
-  constructor(readonly name: string, readonly title: string, readonly load: () => Promise<Panel>) {}
-
-  refresh(): void {
-    if (this.#panel) {
-      this.#panel.refresh();
-    } else if (!this.#loading) {
-      this.#loading = true;
-      this.element.textContent = panels_texts.loading;
-      this.load().then((panel) => this.#show_loaded(panel), (error) => {
-        this.#loading = false; // the next refresh() tries again
-        this.element.textContent = panels_texts.not_loaded(error instanceof Error ? error.message : String(error));
-      });
-    }
-  }
-
-  show(subject: {[key: string]: unknown}): void {
-    if (this.#panel) {
-      this.#panel.show?.(subject);
-    } else {
-      this.#subject = subject;
-    }
-  }
-
-  #show_loaded(panel: Panel): void {
-    this.#panel = panel;
-    this.element.replaceChildren(panel.element);
-    panel.refresh();
-    if (this.#subject) {
-      panel.show?.(this.#subject);
-    }
-  }
-}
 
 type Later = typeof import("./loaded_later");
 

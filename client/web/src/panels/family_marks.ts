@@ -1,12 +1,9 @@
-// FamilyMarks and the legend: the two organisms that the user has marked, A and B, and the sentence about their common
-// ancestors; and what the colours of the tree mean.
-import {type Legend, scale_gradient} from "../family/colouring";
-import {ancestors_of_two, type AncestorsOfTwo, type CommonAncestors} from "../family/common_ancestors";
+// FamilyMarks: the two organisms that the user has marked, A and B, and the sentence about their common ancestors.
+import {type AncestorsOfTwo, ancestors_of_two, type CommonAncestors} from "../family/common_ancestors";
 import {type Ancestor, name_key, type OrganismName} from "../family/lineage";
 import type {FamilyTree, Place} from "../family/spot";
 import {place_of} from "../family/tree";
 import {family_texts} from "../texts/family";
-import {three_digits} from "../texts/numbers";
 import {h, set_text} from "../widgets/dom";
 import {button} from "../widgets/form";
 
@@ -77,36 +74,4 @@ function sentence_of(tree: FamilyTree, one: Place, other: Place, of_two: Ancesto
   return is_common(one) ? family_texts.one_descends_from_other("A", "B") :
     is_common(other)    ? family_texts.one_descends_from_other("B", "A") :
                           family_texts.two_descend_from(ancestors_in(tree, of_two));
-}
-
-/** first_generation  the generation from which lineages are counted */
-export function legend_parts(legend: Legend, first_generation: number): Node[] {
-  switch (legend.kind) {
-    case "nothing":
-      return [];
-    case "lineages":
-      return [
-        h("span", {}, family_texts.legend_lineages(first_generation)),
-        ...legend.lineages.map(({founder, count, colour}) => {
-          const swatch = h("span", {class: "family-swatch"});
-          swatch.style.background = colour;
-          return h("span", {}, swatch, family_texts.legend_lineage(founder, count));
-        }),
-        ...(
-          legend.others.count > 0 ?
-            [h("span", {}, family_texts.legend_others(legend.others.lineages, legend.others.count))] :
-            []),
-        h("span", {}, family_texts.legend_grey),
-      ];
-    case "scale": {
-      const bar = h("span", {class: "family-scale"});
-      bar.style.background = scale_gradient;
-      return [
-        ...(
-          legend.least <= legend.most ? [h("span", {}, three_digits(legend.least), bar, three_digits(legend.most))] :
-                                        []),
-        ...(legend.unknown > 0 ? [h("span", {}, family_texts.legend_unknown(legend.unknown))] : []),
-      ];
-    }
-  }
 }

@@ -1,5 +1,6 @@
 // FamilyStatus: what the panel "family" shows, what it has loaded, and what keeps it from showing a tree.
-import {type FamilyData, gene_values_max, organisms_max, type Subject} from "../family/family_data";
+import {type FamilyData, type Subject} from "../family/family_data";
+import {gene_values_max, organisms_max} from "../family/loading";
 import type {ShownTree} from "../family/shown_tree";
 import type {FamilyTree} from "../family/spot";
 import {family_texts} from "../texts/family";

@@ -1,6 +1,7 @@
 // BetControls: the bets of the user on a breeding, and their score.
 import {Bets, bets_max, score_of, score_text} from "../breeding/bets";
-import {type Comparison, copies_so_far, type Progress} from "../breeding/comparison";
+import type {Comparison} from "../breeding/comparison";
+import {copies_so_far, type Progress} from "../breeding/progress";
 import type {BreedingRecord} from "../breeding/record";
 import {rank_colour, text_on} from "../breeding/wheel";
 import {css} from "../render/look";

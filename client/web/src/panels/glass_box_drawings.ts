@@ -11,10 +11,11 @@ import {
   origin_text,
   other_genes_text
 } from "../breeding/inheritance";
-import {type BreedingRecord, contestants_of, rank_of, slot_of} from "../breeding/record";
+import {type BreedingRecord, rank_of, slot_of} from "../breeding/record";
+import {contestants_of} from "../breeding/tournament";
 import {point_at, rank_colour, ring_path, text_on, wheel_arcs} from "../breeding/wheel";
-import type {Descendant} from "../core/protocol";
 import {gene_label} from "../organism/texts";
+import type {Descendant} from "../core/protocol";
 import {css} from "../render/look";
 import {delta_text, gene_text} from "../texts/breeding";
 import {glass_box_texts} from "../texts/glass_box";

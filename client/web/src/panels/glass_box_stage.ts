@@ -1,6 +1,7 @@
 // Stage: the tab "Step" of the glass box, a drawing of the present moment of a breeding.
 import {caption} from "../breeding/caption";
-import {type Comparison, copies_after, type Progress} from "../breeding/comparison";
+import {type Comparison, copies_after} from "../breeding/comparison";
+import type {Progress} from "../breeding/progress";
 import type {BreedingRecord} from "../breeding/record";
 import type {Moment} from "../breeding/stepper";
 import {genes_of} from "../organism/genes";

@@ -1,6 +1,7 @@
 // OrganismLife: the life of the selected organism: its fate, its next action, its meals and its body; and its health as
 // a curve.
-import {axis_end, type OrganismHistory} from "../organism/history";
+import {axis_end} from "../organism/health";
+import type {OrganismHistory} from "../organism/history";
 import {choice_text, fate_text} from "../organism/texts";
 import {organism_texts as texts} from "../texts/organism";
 import {h, set_text, svg} from "../widgets/dom";

@@ -11,9 +11,11 @@ import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {h, set_text} from "../widgets/dom";
 import {accept_drops, save_file} from "../widgets/files";
 import {row} from "../widgets/form";
-
 import type {Panel, PanelContext} from "../world/panel_context";
-import {CompareChoice, GeneChoice, GeneHistogram, QuantityTabs, ScopeChoice} from "./plots_choices";
+import {QuantityTabs, ScopeChoice} from "./plots_choices";
+import {CompareChoice} from "./plots_compare";
+import {GeneChoice} from "./plots_genes";
+import {GeneHistogram} from "./plots_histogram";
 
 const plot_height = 270; // CSS pixels
 const image_width = 1200, image_height = 700; // of a saved image, in pixels

@@ -2,8 +2,10 @@
 import {plot_texts} from "../texts/plot";
 import {figure_texts as texts} from "../texts/plots_panel";
 import type {AccountPart, Column, GenePart, HistoryTable, Island} from "./history_table";
-import {type Marks, type PlotContent, type Series, type SeriesColour, thickness_default} from "./plot_content";
-import {compare_dash, histogram, type Mark, type Numbers, range_of, running_mean} from "./plot_layout";
+import {thickness_default} from "./plot_content";
+import type {Marks, PlotContent, Series, SeriesColour} from "./plot_content";
+import {compare_dash, histogram, range_of, running_mean} from "./plot_layout";
+import type {Mark, Numbers} from "./plot_layout";
 
 export type Quantity = "fitness"|"genes"|"selection"|"diversity"|"survivors"|"deaths"|"food";
 export const quantities: readonly Quantity[] =

@@ -1,12 +1,13 @@
 // FitnessCurve: the curves of the best and the mean fitness in the column. A click shows a generation in a replay.
-import {significant} from "../texts/numbers";
-import {plot_texts} from "../texts/plot";
-import type {ViewedWorld} from "../world/world";
-import {marks_of} from "./change_marks";
-import {type Column, HistoryTable} from "./history_table";
 import {Plot} from "./plot";
 import type {Series, SeriesColour} from "./plot_content";
 import {running_mean} from "./plot_layout";
+import {marks_of} from "./change_marks";
+import {HistoryTable} from "./history_table";
+import type {Column} from "./history_table";
+import {significant} from "../texts/numbers";
+import {plot_texts} from "../texts/plot";
+import type {ViewedWorld} from "../world/world";
 
 const generations_in_mean = 10;
 

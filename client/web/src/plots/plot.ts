@@ -7,13 +7,15 @@
 // milliseconds. Nothing is animated.
 import {plot_texts} from "../texts/plot";
 import {h} from "../widgets/dom";
-import {type LinkedPlot, LinkedX, x_extent} from "./linked_x";
+import type {Frame} from "./plot_frame";
+import {LinkedX, x_extent} from "./linked_x";
+import type {LinkedPlot} from "./linked_x";
 import type {PlotContent, PlotView} from "./plot_content";
 import {PlotCursor} from "./plot_cursor";
 import {PlotInput} from "./plot_input";
 import type {Range} from "./plot_layout";
 import {paint_legend, PlotLegend} from "./plot_legend";
-import {type Frame, paint_plot} from "./plot_painter";
+import {paint_plot} from "./plot_painter";
 import {on_theme_change, theme_of} from "./plot_theme";
 
 const image_margin = 14; // pixels

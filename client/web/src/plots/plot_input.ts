@@ -1,9 +1,11 @@
 // PlotInput: mouse, fingers and keyboard on the area of a plot: they move the cursor, and zoom and move the x axis.
+import {width_of_area, x_at, x_near} from "./plot_frame";
+import type {Frame} from "./plot_frame";
 import type {LinkedX} from "./linked_x";
+import {nearest} from "./plot_layout";
+import type {Numbers, Range} from "./plot_layout";
 import type {PlotView} from "./plot_content";
 import type {PlotCursor} from "./plot_cursor";
-import {nearest, type Numbers, type Range} from "./plot_layout";
-import {type Frame, width_of_area, x_at, x_near} from "./plot_painter";
 
 const zoom_of_one_notch = 1.25;
 const drag_pixels = 5; // a pointer that moves less is a click

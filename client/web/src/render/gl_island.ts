@@ -5,7 +5,8 @@ import {steps_per_px} from "../core/snapshot";
 import {zoom_min} from "./camera";
 
 import type {DensityGrid} from "./density";
-import {GlMinimap, GlOverlays, overlay_steps} from "./gl_overlays";
+import {GlMinimap} from "./gl_minimap";
+import {GlOverlays, overlay_steps} from "./gl_overlays";
 import {Cells, GlShapes, Projection, Table} from "./gl_shapes";
 import type {GlText} from "./gl_text";
 import {KeptBoxes, Points, with_room} from "./interpolator";

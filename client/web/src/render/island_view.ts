@@ -2,86 +2,18 @@
 // it.
 import type {Camera, Drawing, Look, PopulationColumns, Tool} from "../core/messages";
 import {type Snapshot, type SnapshotInfo, steps_per_px} from "../core/snapshot";
-import {
-  clamped,
-  fitted,
-  is_whole_island_visible,
-  minimap_frame,
-  minimap_place,
-  type Place,
-  type Point,
-  visible_part
-} from "./camera";
+import {clamped, fitted, type Place, type Point, visible_part} from "./camera";
 import {Colouring} from "./colouring";
-import {count_organisms, count_overview, density_scale, DensityGrid, join_tiles} from "./density";
-import {labels_of} from "./labels";
+import {count_organisms, density_scale, DensityGrid, join_tiles} from "./density";
+import {Description} from "./description";
 import {colours_of, default_look, island_colours, styles_of} from "./look";
 import {dots_radius_pixels, shows_details, too_many_for_dots, too_small_to_see, typical_radius_px} from "./marks";
-import {organism_at, type Picked, picked_at} from "./picking";
+import {MinimapGrid} from "./minimap";
+import {organism_at, picked_at, type Picked} from "./picking";
 import type {Painter, Scene} from "./scene";
-import {StreamedIsland, StreamedRegion, type WantedView} from "./streamed_island";
-
-/** What the last frame showed, for legends and hints. It is replaced only after a change. */
-export class Description {
-  /** Null before the first frame with a snapshot. */
-  drawing: Drawing|null = null;
-  #key = "";
-
-  /** by_lineage: the population whose lineages are shown. */
-  update(scene: Scene, pointed_at: Drawing["pointed_at"], colouring: Colouring, by_lineage: PopulationColumns|null):
-    void {
-    const {at, density, density_scale, health_max, look, shows} = scene;
-    const key = [
-      shows,
-      density_scale?.high,
-      density.cell_px,
-      health_max,
-      at.latest.has_headings,
-      look.colour_by,
-      colouring.legend_key,
-      by_lineage === null,
-      pointed_at?.organism,
-      pointed_at?.food,
-      pointed_at?.poison,
-      pointed_at === null,
-    ].join();
-    if (key === this.#key) {
-      return;
-    }
-    this.#key = key;
-    this.drawing = {
-      shows,
-      density: density_scale === null ? null : {cell_px: density.cell_px, most: density_scale.high},
-      health_max,
-      gene_range: colouring.gene_range,
-      headings: at.latest.has_headings,
-      pointed_at: pointed_at && {organism: pointed_at.organism, food: pointed_at.food, poison: pointed_at.poison},
-      ...colouring.lineages(by_lineage),
-    };
-  }
-}
-
-/** The densities of the whole island on the minimap, which are counted again only after a change. */
-export class MinimapGrid {
-  readonly #grid = new DensityGrid();
-  #version = 0;
-
-  /** The minimap; null: the whole island is visible. */
-  of(island: StreamedIsland, camera: Camera, place: Place): Scene["minimap"] {
-    const size = island.size!, {whole} = island;
-    if (is_whole_island_visible(camera, place, size)) {
-      return null;
-    }
-    const version = whole === null ? island.version : -1 - island.whole_version;
-    if (this.#version !== version) {
-      this.#version = version;
-      const from = whole ?? island.at.latest;
-      count_overview(this.#grid, from, size, from.info!.tile_px);
-    }
-    const map = minimap_place(place, size), frame = minimap_frame(map, camera, place);
-    return {place: map, frame, grid: this.#grid, scale: density_scale("viridis", this.#grid), version};
-  }
-}
+import {labels_of} from "./scene_labels";
+import {StreamedIsland} from "./streamed_island";
+import {StreamedRegion, type WantedView} from "./streamed_region";
 
 export interface ViewSettings {
   place: Place;

@@ -5,37 +5,11 @@
 import type {Look} from "../core/messages";
 import type {Snapshot, SnapshotInfo} from "../core/snapshot";
 import {pane_frame, type Place, type Size} from "./camera";
-import {GlIsland} from "./gl_island";
-import {GlShapes} from "./gl_shapes";
-import {GlText} from "./gl_text";
+import {GlSurface} from "./gl_surface";
 import {default_settings, IslandView, type ViewSettings} from "./island_view";
-import {type Colour, colours_of, default_look} from "./look";
-import type {Painter, Surface} from "./scene";
+import {colours_of, default_look} from "./look";
+import type {Surface} from "./scene";
 import {island_place, tile_places} from "./tiles";
-
-/** A canvas with a WebGL2 context, whose shaders and glyphs all islands on it share. */
-export class GlSurface implements Surface {
-  readonly #shapes: GlShapes;
-  readonly #text: GlText;
-
-  constructor(gl: WebGL2RenderingContext) {
-    this.#shapes = new GlShapes(gl);
-    this.#text = new GlText(this.#shapes);
-  }
-
-  painter(): Painter {
-    return new GlIsland(this.#shapes, this.#text);
-  }
-
-  fill({width, height}: Size, ratio: number, colour: Colour): void {
-    this.#shapes.begin({left: 0, top: 0, width, height, ratio, frame: pane_frame, is_tile: false, has_details: true});
-    this.#shapes.fill(0, 0, width * ratio, height * ratio, colour);
-  }
-
-  close(): void {
-    this.#shapes.gl.getExtension("WEBGL_lose_context")?.loseContext();
-  }
-}
 
 /** The surface of a canvas; on_restored: called with another one after the browser has restored a lost context. */
 function surface_of(canvas: OffscreenCanvas, on_restored: (surface: Surface|null) => void): Surface {

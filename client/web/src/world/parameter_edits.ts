@@ -10,7 +10,8 @@ import type {
   PlannedChange, ScheduledValue, SetParameters} from "../core/protocol";
 import {parameter_words} from "../texts/parameter_words";
 import {actor_text} from "../texts/users";
-import {same, value_text} from "./parameters";
+
+import {same, value_text} from "./parameter_values";
 
 const transactions_kept = 100;
 const field_prefix = "set_parameters.", revision_field = "expected_revision";
