@@ -58,6 +58,9 @@ function send_events(): void {
   }
 }
 
+// ---- what the core reports
+// ---------------------------------------------------------------------------------------------
+
 function take(events: CoreEvent[]): void {
   for (const event of events) {
     switch (event.kind) {
@@ -121,6 +124,9 @@ function take_snapshot(subscription: Subscription, snapshot: Snapshot): void {
   loop();
 }
 
+// ---- frames
+// ------------------------------------------------------------------------------------------------------------
+
 function loop(): void {
   if (is_looping || !is_visible) {
     return;
@@ -174,6 +180,9 @@ function show(visible: boolean): void {
   connection.open_now();
   loop();
 }
+
+// ---- messages of the page
+// ----------------------------------------------------------------------------------------------
 
 scope.onmessage = ({data: message}) => {
   switch (message.kind) {

@@ -5,6 +5,7 @@ import type {Comparison} from "./comparison";
 export const bets_max = 5;
 
 export class Bets {
+  /** In the order of the bets. */
   organisms: number[] = [];
 
   /** Places a bet on the organism, or withdraws it. Ignores further bets after bets_max. */

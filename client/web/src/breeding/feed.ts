@@ -14,6 +14,7 @@ const shown_min_ms = 500; // least time for which a breeding stays while the fee
 const shown_after_playing_ms = 1500; // … and after the breeding was played to its end
 
 export interface FeedListener {
+  /** Something has arrived, or a request has failed. */
   changed(): void;
   /** The steps of another breeding begin. at_end: those of the last one were at their end. */
   begun(at_end: boolean): void;

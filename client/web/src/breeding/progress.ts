@@ -14,6 +14,7 @@ export function progress_of(record: BreedingRecord, moment: Moment): Progress {
   return {made, complete: moment.stage !== "scaling" && made >= all};
 }
 
+/** The copies of each rank in the picks that were made. */
 export function copies_so_far(record: BreedingRecord, comparison: Comparison, {made, complete}: Progress): number[] {
   return complete ? comparison.copies : copies_after(record, made);
 }

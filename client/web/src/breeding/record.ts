@@ -19,6 +19,7 @@ export function same_key(a: BreedingKey, b: BreedingKey): boolean {
 export class BreedingRecord {
   /** Breeding without its lists; null before the first page. */
   head: Omit<Breeding, "contenders"|"picks"|"descendants">|null = null;
+  /** The rows received so far, from row 0. */
   readonly contenders: Contender[] = [];
   readonly picks: Pick[] = [];
   readonly descendants: Descendant[] = [];
@@ -30,6 +31,7 @@ export class BreedingRecord {
     return this.head?.contender_count ?? 0;
   }
 
+  /** The picks that the user can step through. */
   get pick_count(): number {
     return Math.min(this.head?.pick_count ?? 0, rows_kept_max);
   }

@@ -18,6 +18,7 @@ export class Stepper {
   #descendants = 0;
   #due = 0; // fraction of the next step that has elapsed, 0 to 1
 
+  /** Loads a breeding and goes to its first moment. */
   load(picks: number, descendants: number): void {
     this.#picks = picks;
     this.#descendants = descendants;

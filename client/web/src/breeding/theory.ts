@@ -107,6 +107,7 @@ export function normal_scores(population: number): number[] {
   return Array.from({length: population}, (_, rank) => population * (density_above(rank + 1) - density_above(rank)));
 }
 
+/** The mean of the scores, weighted by the copies. */
 export function weighted_mean(copies: readonly number[], scores: readonly number[]): number {
   const all = sum(copies);
   return all > 0 ? sum(copies.map((number, rank) => number * scores[rank]!)) / all : 0;

@@ -38,11 +38,13 @@ export function wheel_arcs(contenders: readonly Contender[], turns_min: number):
   return arcs;
 }
 
+/** The point of a circle at an angle in turns from the top, clockwise. */
 export function point_at(centre: number, radius: number, turns: number): {x: number; y: number} {
   const angle = (turns - 0.25) * 2 * Math.PI;
   return {x: centre + radius * Math.cos(angle), y: centre + radius * Math.sin(angle)};
 }
 
+/** The outline of a part of a ring as an SVG path. */
 export function ring_path(centre: number, inner: number, outer: number, begin: number, end: number): string {
   const stop = Math.min(end, begin + 0.99999); // an arc of a full turn would have no length
   const large = stop - begin > 0.5 ? 1 : 0;

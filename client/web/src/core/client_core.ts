@@ -148,6 +148,8 @@ export class ClientCore {
     };
   }
 
+  // ---- the connection ----------------------------------------------------------------------------------------------
+
   /** Queues the Hello. Call it after connecting. */
   opened(): void {
     this.#queued = [];
@@ -244,6 +246,8 @@ export class ClientCore {
     return bytes;
   }
 
+  // ---- requests ----------------------------------------------------------------------------------------------------
+
   /** Queues a request without request_id and client_key, such as { pause: { world: "a" } }. It is sent when there is a
    *  session. Returns its request_id, which names it in the "response" or "failed" event.
    *
@@ -288,6 +292,8 @@ export class ClientCore {
       this.#abandoned_replays.add(id);
     }
   }
+
+  // ---- subscriptions -----------------------------------------------------------------------------------------------
 
   /** Subscribes when there is a session, and again in each new session, until unsubscribe().
    *
@@ -336,6 +342,8 @@ export class ClientCore {
       this.#send_acknowledgement(subscription.server_id, snapshot.info.island, snapshot.info.sequence);
     }
   }
+
+  // ---- private -----------------------------------------------------------------------------------------------------
 
   #take_events(): CoreEvent[] {
     const events = this.#events;

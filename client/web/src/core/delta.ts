@@ -205,6 +205,7 @@ function turned(differences: Int32Array, headings: Uint8Array, count: number): U
   return to;
 }
 
+// ---- entities that are gone or have come ---------------------------------------------------------------------------
 //
 // The loops over Int32Array and Uint8Array are separate functions, because a loop that meets both is several times
 // slower.

@@ -92,6 +92,8 @@ export function decode_density(body: Uint8Array, counts: number[]): NonNullable<
   return {cells, organisms, food, poison};
 }
 
+// ---- merging -------------------------------------------------------------------------------------------------------
+
 /** Merges the entities of tiles into columns with rising ids. If no entity of a kind has changed, the columns are those
  *  of the last merge. */
 export class TileMerger {

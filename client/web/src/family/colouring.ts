@@ -6,11 +6,13 @@ import type {Ancestor} from "./lineage";
 import type {FamilyTree} from "./spot";
 import {founders_of} from "./tree";
 
+/** What the colours show. */
 export type ColourBy =|{kind: "nothing"}|{kind: "lineage"}|{kind: "fitness"}|{
   kind: "gene";
   gene: number; // its index
 };
 
+/** The meaning of the colours: a few lineages, or the ends of a scale. */
 export type Legend =|{kind: "nothing"}|{
   kind: "lineages";
   lineages: {founder: Ancestor; count: number; colour: string}[]; // roots of each, the largest lineage first

@@ -11,6 +11,7 @@ import {
   type LoadedLineage
 } from "./loading";
 
+/** What a tree is made of. */
 export interface Subject {
   run_id: string;
   whole: boolean; // all organisms of the generation and island of `root`

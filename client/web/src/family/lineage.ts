@@ -3,6 +3,7 @@
 // The table contains only numbers and words of the protocol, so no cell is quoted.
 import {family_texts} from "../texts/family";
 
+/** An organism of the run: its generation, its island and its id there. */
 export interface OrganismName {
   generation: number;
   island: number;

@@ -60,6 +60,7 @@ export async function load_generations(
   return {ancestors: reader.ancestors, bytes, first_generation, generations_left_out: left_out};
 }
 
+/** Adds the genes of one generation to the table. */
 export async function load_genes(server: Server, world: string, generation: number, table: GeneTable): Promise<void> {
   const reader = new PopulationReader();
   await read_export(server, {world, table: "RUN_TABLE_POPULATION", generation}, (text, last) => {

@@ -14,6 +14,7 @@ export interface FamilyTree {
   width: number;
 }
 
+/** A place in the tree. */
 export interface Place {
   row: number;
   place: number;

@@ -70,6 +70,7 @@ export function founders_of(tree: FamilyTree): Int32Array[] {
   return founders;
 }
 
+/** The place of an organism; null if the tree does not contain it. */
 export function place_of(tree: FamilyTree, name: OrganismName): Place|null {
   const row = name.generation - tree.first_generation;
   const place = (tree.rows[row] ?? [])

@@ -15,6 +15,7 @@ export function compared_genes(
   return names.map((name, i) => ({name, kept: kept[i]!, other: other[places.get(name) ?? -1] ?? null}));
 }
 
+/** The number of genes that both have, and of those that differ. */
 export function difference_counts(genes: readonly ComparedGene[]): {common: number; different: number} {
   const common = genes.filter((gene) => gene.other !== null);
   return {common: common.length, different: common.filter((gene) => gene.other !== gene.kept).length};

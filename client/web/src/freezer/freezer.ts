@@ -54,6 +54,7 @@ export class Freezer {
     return await result_of<Kept[]>(kept.getAll());
   }
 
+  /** The genes of an entry. */
   async population(name: string): Promise<Population> {
     const {kept, genes} = await this.#begin("readonly");
     const [about, islands] = await Promise.all(
@@ -152,6 +153,7 @@ export function room_problem(entries: readonly Pick<Kept, "genes_bytes">[], gene
                                            "";
 }
 
+/** The number of organisms of an entry. */
 export function kept_count(kept: Kept): number {
   return kept.organism_counts.reduce((sum, count) => sum + count, 0);
 }
@@ -165,6 +167,7 @@ export function name_of_origin(origin: WorldOrigin): string {
 
 let freezer: Freezer|null = null;
 
+/** The freezer of this page. */
 export function kept_organisms(): Freezer {
   freezer ??= new Freezer();
   return freezer;

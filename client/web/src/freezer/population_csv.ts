@@ -20,10 +20,12 @@ const genes_max = 10_000;
 const shown_characters_max = 80; // of a wrong line
 const number_pattern = /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
+/** Whether a population is a single organism. */
 export function is_organism({gene_names, islands}: Population): boolean {
   return islands.length === 1 && islands[0]!.length === gene_names.length;
 }
 
+/** The genes of one organism. */
 export function genes_of_organism(population: Population, island: number, organism: number): Float32Array {
   const count = population.gene_names.length;
   return population.islands[island]!.subarray(organism * count, (organism + 1) * count);
@@ -80,6 +82,7 @@ export function read_population(text: string): Population|string {
                                 {gene_names, islands: islands.map((genes) => Float32Array.from(genes))};
 }
 
+/** Returns the text of a file with these genes. */
 export function population_text(population: Population): string {
   const {gene_names, islands} = population, count = gene_names.length;
   const lines = [csv_line(["island", "organism", ...gene_names])];

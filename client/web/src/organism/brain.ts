@@ -119,6 +119,7 @@ export function neighbour(diagram: BrainDiagram, neuron: number, key: string): n
   return nearest;
 }
 
+/** "−0.42" */
 export const activation_text = texts.number;
 
 /** "hidden3 → turn: weight −0.42" */

@@ -7,6 +7,7 @@ export const health_points_max = 1024; // when reached, every second point is re
 export const offspring_generation_max = 20_000; // of a larger next generation, the offspring are not searched
 const no_rows = 0xffff_ffff; // as the first row of a list: the answer has no rows of that list
 
+/** An organism is named by its island, its generation and its id in that generation. */
 export interface OrganismPlace {
   run_id: string;
   island: number;
@@ -14,6 +15,7 @@ export interface OrganismPlace {
   id: number;
 }
 
+/** How often an organism was picked when its generation bred. */
 export interface Picks {
   organism: number;
   count: number;
@@ -22,6 +24,7 @@ export interface Picks {
   migrant: {island: number; organism: number}|null; // the organism is a copy of this organism of another island
 }
 
+/** A child in the next generation. */
 export interface Child {
   id: number;
   other_parent: number|null; // null: the child has only one parent
@@ -121,6 +124,7 @@ export class OrganismHistory {
     return null;
   }
 
+  /** Reads the answer to a request that wanted() returned. */
   add_breeding(request: BreedingRequest, breeding: Breeding): void {
     const generation = breeding.generation ?? 0;
     const contender = breeding.contenders?.[0];
@@ -183,6 +187,7 @@ function is_copy({order_mutation, mutations = []}: Descendant): boolean {
   return !order_mutation && mutations.length === 0;
 }
 
+/** The parents of an organism, each once. */
 export function distinct_parents(info: OrganismInfo|null): number[] {
   return [...new Set(info?.parents ?? [])];
 }

@@ -98,6 +98,8 @@ export class FamilyPanel implements Panel {
     }
   }
 
+  // ---- the subject ----
+
   /** What the tree shows if it begins at the shown moment; null if that needs a selected organism. */
   #shown_root({snapshot, island, selection: {id: selected}}: ViewedWorld): OrganismName|null {
     return !snapshot      ? null :
@@ -134,6 +136,8 @@ export class FamilyPanel implements Panel {
         organisms * world.gene_names.length);
     }
   }
+
+  // ---- the drawing ----
 
   #draw_reroot(root: OrganismName|null): void {
     const subject = this.#subject;
@@ -172,6 +176,8 @@ export class FamilyPanel implements Panel {
     this.#note.show({tree, of_all, marks, colouring, colour_by, genes: this.#data.genes, gene_names: world.gene_names});
     this.#table.show({tree, of_all, of_two: marks.of_two});
   }
+
+  // ---- one organism ----
 
   #mark(at: Place): void {
     if (this.#shown.tree) {

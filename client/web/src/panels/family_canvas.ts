@@ -79,10 +79,12 @@ export class FamilyLayout {
     return x >= label_width - 1 && x <= this.width;
   }
 
+  /** The position in units of the tree. */
   unit_at(x: number): number {
     return this.view.begin + (x - label_width) / this.each;
   }
 
+  /** The organism nearest to a point, at most `reach` away. */
   nearest(x: number, y: number, reach: number): Place|null {
     let found: Place|null = null, least = reach;
     const row = Math.round((y - this.y_of(0)) / this.row_height);
@@ -99,6 +101,7 @@ export class FamilyLayout {
   }
 }
 
+/** Lines of one colour. */
 class Lines {
   length = 0; // of all, in CSS pixels
   #paths: Path2D[] = [];
@@ -124,6 +127,7 @@ class Lines {
   }
 }
 
+/** One drawing of a scene. */
 export class FamilyPainter {
   readonly #layout: FamilyLayout;
   readonly #scene: Scene;

@@ -24,6 +24,7 @@ export class FamilyChanges {
     this.#show = show;
   }
 
+  /** Another run is shown. */
   forget(): void {
     this.#texts.clear();
     this.read(null, null);

@@ -17,6 +17,7 @@ const drag_px = 4; // a shorter movement is a click
 export interface FamilyActions {
   /** An organism is to be read: the pointer or the keyboard points at it; null: none. */
   read(at: Place|null): void;
+  /** Shows the moment of an organism. */
   go_to(at: Place): void;
   mark(at: Place): void;
 }
@@ -86,6 +87,7 @@ export class FamilyDrawing {
     }
   }
 
+  /** Shows the whole width. */
   fit(): void {
     this.#set_view({begin: 0, end: this.#scene?.tree.width ?? 1});
   }
@@ -94,6 +96,8 @@ export class FamilyDrawing {
     this.#view = view;
     this.#paint_soon();
   }
+
+  // ---- painting ----
 
   #paint_soon(): void {
     if (this.#request === 0) {
@@ -146,6 +150,8 @@ export class FamilyDrawing {
       painter.paint_pointed_at(this.#pointed_at, theme.text);
     }
   }
+
+  // ---- pointer ----
 
   #place_of(event: MouseEvent): Place|null {
     const box = this.#base.getBoundingClientRect();
@@ -218,6 +224,8 @@ export class FamilyDrawing {
       zoomed(this.#view, layout.tree.width, unit, zoom_of_notch ** (event.deltaY > 0 ? -notches : notches)));
   }
 
+  // ---- keyboard ----
+
   #press(event: KeyboardEvent): void {
     if (event.ctrlKey || event.altKey || event.metaKey || !this.at || !this.#scene) {
       return;
@@ -236,6 +244,7 @@ export class FamilyDrawing {
     event.stopPropagation();
   }
 
+  /** Returns whether the drawing uses this key. */
   #act(key: string, at: Place): boolean {
     switch (key) {
       case "Enter":

@@ -15,6 +15,7 @@ export function ancestors_in(tree: FamilyTree, {row, places}: CommonAncestors): 
   return places.map((place) => organism_at(tree, {row, place}));
 }
 
+/** The marks that are in a tree. */
 export interface MarksInTree {
   places: readonly Place[]; // A, B
   of_two: AncestorsOfTwo|null; // the common ancestors of both
@@ -45,6 +46,7 @@ export class FamilyMarks {
     this.#on_change();
   }
 
+  /** Updates the sentence. */
   show(tree: FamilyTree): MarksInTree {
     if (this.#shown?.tree !== tree || this.#shown.marked !== this.#marked) {
       this.#shown = {tree, marked: this.#marked, result: this.#compute(tree)};

@@ -11,6 +11,7 @@ import type {ViewedWorld} from "../world/world";
 import {FamilyChanges} from "./family_changes";
 import {type MarksInTree, organism_at} from "./family_marks";
 
+/** What the note speaks about. */
 export interface NoteSubject {
   tree: FamilyTree;
   of_all: CommonAncestors|null;
@@ -36,6 +37,7 @@ export class FamilyNote {
     this.element = h("div", {class: "family-reading"}, this.#text, this.#genes, h("div", {class: "row"}, this.#mark));
   }
 
+  /** Describes another organism. */
   read(world: ViewedWorld, at: Place|null): void {
     this.at = at;
     this.#draw();
@@ -53,6 +55,7 @@ export class FamilyNote {
     this.#draw();
   }
 
+  /** Another run is shown. */
   forget(): void {
     this.#changes.forget();
   }

@@ -84,6 +84,8 @@ export class FreezerPanel implements Panel {
     this.#entry.refresh();
   }
 
+  // ---- the list ----
+
   async #list(): Promise<void> {
     try {
       this.#kept = await this.#freezer.list();
@@ -113,6 +115,7 @@ export class FreezerPanel implements Panel {
     await this.#show_chosen();
   }
 
+  /** Shows an entry; the empty name: none. */
   #choose(name: string): void {
     this.#chosen = name;
     void this.#list();
@@ -129,6 +132,8 @@ export class FreezerPanel implements Panel {
       set_text(this.#problem, (error as Error).message);
     }
   }
+
+  // ---- keeping ----
 
   /** Runs one action at a time, and shows why it failed. */
   async #act(what: () => Promise<void>): Promise<void> {

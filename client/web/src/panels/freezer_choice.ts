@@ -7,6 +7,7 @@ import {set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import {labelled, row} from "../widgets/form";
 
+/** An entry of the freezer with its genes. */
 export interface ShownEntry {
   kept: Kept;
   population: Population;

@@ -62,6 +62,7 @@ export class FreezerEntry {
         this.#choice.element, this.#wrong, this.#placing.element, this.#problem, this.#genes.element);
   }
 
+  /** Shows an entry; null: none. */
   show(shown: ShownEntry|null): void {
     const before = this.#shown?.kept;
     if (shown && before?.name === shown.kept.name && before.kept_ms === shown.kept.kept_ms) {
@@ -102,6 +103,8 @@ export class FreezerEntry {
     const organism = this.#choice.chosen();
     return typeof organism === "string" ? organism : {organism, gene_names: this.#shown!.kept.gene_names};
   }
+
+  // ---- files, names ----
 
   #ask_rename(): void {
     this.#confirm.element.hidden = true;

@@ -100,6 +100,7 @@ export class FreezerPlacing {
     this.#context.notify(texts.scattered(name, wanted, world.name, island));
   }
 
+  /** Returns whether a free place was found. */
   async #place_copy(world: ViewedWorld, genes: number[], size: {x: number; y: number}): Promise<boolean> {
     const random = (length: number): number =>
       length > 2 * margin_px ? margin_px + Math.random() * (length - 2 * margin_px) : length / 2;

@@ -30,6 +30,7 @@ export class GlassBoxPanel implements Panel {
   readonly #feed: BreedingFeed;
   readonly #hold: HoldControl;
 
+  // ---- elements ----
   readonly #generation: HTMLInputElement = h("input", {
     class: "field glass-generation",
     type: "number",

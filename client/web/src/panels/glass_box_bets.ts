@@ -22,6 +22,7 @@ export class BetControls {
     this.chosen = h("input", {type: "checkbox", onchange: () => changed(true)});
   }
 
+  /** Another breeding begins. */
   begin(): void {
     this.#bets = new Bets();
     this.closed = false;

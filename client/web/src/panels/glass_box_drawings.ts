@@ -34,6 +34,8 @@ function drawing(width: number, height: number, label: string): SVGSVGElement {
     {class: "glass-drawing", viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": label});
 }
 
+// ---- the wheel -------------------------------------------------------------------------------------------------
+
 /** The wheel of a breeding. Its slots are drawn once; show() moves the pointer. */
 export class WheelDrawing {
   readonly element: SVGSVGElement;
@@ -132,6 +134,8 @@ export class WheelDrawing {
   }
 }
 
+// ---- tournaments and ranks -------------------------------------------------------------------------------------
+
 /** The contestants of the tournament of pick `index`; the winners are framed. */
 export function draw_tournament(record: BreedingRecord, index: number, complete: boolean): HTMLElement {
   const contestants = contestants_of(record, index);
@@ -202,6 +206,7 @@ function draw_bars(
   return image;
 }
 
+/** Fitness by rank; for a wheel with fitness scaling, also the weights below. */
 export function draw_ranking(
   record: BreedingRecord, comparison: Comparison, copies: readonly number[], current: number|null, width: number,
   complete: boolean): HTMLElement {
@@ -293,6 +298,8 @@ export function draw_copies(
       {"text-anchor": "end"}));
   return image;
 }
+
+// ---- descendants -----------------------------------------------------------------------------------------------
 
 /** The next generation as a row of cells: elite, survivors, children. The cell of `current` is framed. */
 export function draw_descendants(

@@ -28,6 +28,7 @@ export class HoldControl {
     this.element = check(this.#held, glass_box_texts.hold, glass_box_texts.hold_help);
   }
 
+  /** Sends the command that the hold needs now. */
   update(world: ViewedWorld): void {
     const may =
       !world.is_replay && world.server.may("run", world.shown) && world.server.may("run_until_tick", world.shown);

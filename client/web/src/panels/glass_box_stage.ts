@@ -21,6 +21,7 @@ import {
 
 const migrants_shown_max = 8;
 
+/** What the stage shows. */
 export interface StageMoment {
   record: BreedingRecord;
   comparison: Comparison|null;

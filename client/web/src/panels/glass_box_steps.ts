@@ -53,6 +53,7 @@ export class StepControls {
     this.#set_speed();
   }
 
+  /** Performs a move of the user. */
   move(act: () => void): void {
     act();
     this.#changed();

@@ -45,6 +45,7 @@ export function experiment_json(set: ParameterSet): string {
 
 let dialog: NewWorldDialog|null = null;
 
+/** The dialog of the page. */
 export function new_world_dialog(context: PanelContext): NewWorldDialog {
   dialog ??= new NewWorldDialog(context);
   return dialog;
@@ -177,6 +178,8 @@ class NewWorldDialog {
     }
   }
 
+  // ---- the first population ----
+
   async #list_populations(chosen: string): Promise<void> {
     let problem = "";
     try {
@@ -216,6 +219,8 @@ class NewWorldDialog {
       {} :
       first_population(await kept_organisms().population(name), this.#text.value, this.#context.server.parameters);
   }
+
+  // ---- creation ----
 
   async #send(): Promise<void> {
     const name = this.#name.value.trim(), seed = this.#seed.value.trim();

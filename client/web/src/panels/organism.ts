@@ -91,6 +91,8 @@ export class OrganismPanel implements Panel {
     }
   }
 
+  // ---- which organism, and what is known about it ----
+
   /** Follows the selection. An organism stays in the panel when its generation ends, until another one is selected. */
   #follow(world: ViewedWorld): void {
     const place = this.#place_to_show(world);
@@ -183,6 +185,8 @@ export class OrganismPanel implements Panel {
     this.#brain_part.hidden =
       !brain || !this.#brain.update(brain, genes.slice(first, first + count), this.#width.within(280, 560));
   }
+
+  // ---- actions ----
 
   #go_to(generation: number, island: number, organism: number): void {
     const world = this.#context.world();

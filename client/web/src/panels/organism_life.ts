@@ -10,6 +10,7 @@ import type {ViewedWorld} from "../world/world";
 
 const curve_width = 368, curve_height = 64;
 
+/** What its buttons do. */
 export interface LifeActions {
   back_to_live(): void;
   deselect(): void;

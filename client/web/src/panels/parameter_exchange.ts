@@ -12,6 +12,7 @@ import type {UndoStep} from "../world/undo";
 
 const check_delay_ms = 400; // after the last edit, before a dry run
 
+/** What shows the exchange. */
 export interface ExchangeView {
   /** The registry of another server is known: the list of parameters must be built again. */
   described(): void;
@@ -139,6 +140,7 @@ export class ParameterExchange {
     return answer === "accepted";
   }
 
+  /** Cancels a planned change. */
   async cancel({id}: PlannedChange): Promise<void> {
     const {world} = this;
     if (await this.#context.attempt(() => this.#context.server.request("cancel_change", {world, id}))) {
@@ -154,6 +156,7 @@ export class ParameterExchange {
     this.#view.forgotten();
   }
 
+  /** Requests the complete set. */
   async #read(): Promise<void> {
     const {world} = this, transaction = this.#transaction;
     try {

@@ -32,6 +32,7 @@ export class ParameterList {
     this.#context = context;
   }
 
+  /** Makes a row for each parameter of the registry. */
   build(): void {
     const {registry} = this.#context.edits;
     const groups =
@@ -41,6 +42,7 @@ export class ParameterList {
     this.#filter();
   }
 
+  /** Shows the parameters that match a text. */
   search_for(text: string): void {
     this.search.value = text;
     this.#filter();

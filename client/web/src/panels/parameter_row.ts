@@ -63,10 +63,12 @@ export class ParameterRow {
         this.#control.slider, this.#refused, this.#help);
   }
 
+  /** Why the typed text is not a value; empty if it is one. */
   get typing_problem(): string {
     return this.#control.typing_problem;
   }
 
+  /** Shows the present state. */
   update(may: boolean): void {
     const {is_default, violation, edit} = this.#state;
     this.#control.update(may, violation !== null);
@@ -83,6 +85,7 @@ export class ParameterRow {
     this.#update_help();
   }
 
+  /** Forgets a text that was typed but is not a value. */
   forget(): void {
     this.#control.forget();
   }

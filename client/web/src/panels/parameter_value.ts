@@ -10,6 +10,7 @@ import {number_at, share_of, stepped} from "../world/slider_scale";
 
 const slider_places = 1000;
 
+/** What the rows share. */
 export interface RowContext {
   readonly edits: ParameterEdits;
   /** Why the values cannot be changed now, as a sentence; empty if they can. */
@@ -26,6 +27,7 @@ export type ControlNames = {
 };
 
 export class ParameterControl {
+  /** The field, the switch or the drop-down. */
   readonly main: HTMLInputElement|HTMLSelectElement;
   readonly slider: HTMLInputElement|null = null;
   /** Why the typed text is not a value; empty if it is one. */
@@ -53,6 +55,7 @@ export class ParameterControl {
     }
   }
 
+  /** Shows the present value. */
   update(may: boolean, is_refused: boolean): void {
     const shown = this.#context.edits.parameters[this.#parameter]!.shown, title = may ? "" : this.#context.why_not;
     for (const control of [this.main, ...(this.slider ? [this.slider] : [])]) {
@@ -87,6 +90,8 @@ export class ParameterControl {
     this.#typing = this.#dragging = false;
     this.typing_problem = "";
   }
+
+  // ---- elements ----
 
   #made_slider(names: ControlNames): HTMLInputElement {
     return h("input", {
@@ -123,6 +128,8 @@ export class ParameterControl {
       h("select", {class: "field", ...names, onchange: () => this.set({choice: choice.value})}, ...options);
     return choice;
   }
+
+  // ---- input ----
 
   #edit(value: ParameterValue): void {
     this.typing_problem = "";

@@ -77,6 +77,8 @@ export class ParametersPanel implements Panel {
     }
   }
 
+  // ---- RowContext ----
+
   get edits(): ParameterExchange["edits"] {
     return this.#exchange.edits;
   }
@@ -100,6 +102,8 @@ export class ParametersPanel implements Panel {
     }
   }
 
+  // ---- actions ----
+
   #apply(): void {
     if (this.edits.busy) {
       this.#exchange.apply_afterwards();
@@ -122,6 +126,8 @@ export class ParametersPanel implements Panel {
     this.#list.forget();
     this.touch();
   }
+
+  // ---- what is shown ----
 
   #show_changes(): void {
     this.#changed = true;

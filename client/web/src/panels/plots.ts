@@ -109,6 +109,8 @@ export class PlotsPanel implements Panel {
     this.#tabs.choose(quantities.find((one) => one === subject.quantity) ?? this.#tabs.chosen);
   }
 
+  // ---- data ----
+
   #run_id(): string {
     return this.#context.server.world(this.#context.world().name)?.run_id ?? "";
   }
@@ -118,6 +120,9 @@ export class PlotsPanel implements Panel {
       this.#context.world(), this.#is_visible && this.#tabs.chosen === "genes" && this.#genes.gene !== "");
   }
 
+  // ---- plots ----
+
+  /** Draws another plot, soon. */
   #rebuild(): void {
     this.#drawn = "";
     this.#next_build_ms = 0;
@@ -157,6 +162,8 @@ export class PlotsPanel implements Panel {
     }
     this.#histogram.update(world, quantity === "genes" ? this.#genes.gene : "");
   }
+
+  // ---- files ----
 
   /** "evod-default-3f2a9c01-fitness-generation-120" */
   #file_name(what: string): string {

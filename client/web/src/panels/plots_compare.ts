@@ -35,12 +35,14 @@ export class CompareChoice {
         this.#file_row, this.#problem);
   }
 
+  /** Compares with the first of the files. */
   take(files: readonly File[]): void {
     if (files[0] !== undefined) {
       void this.#comparison.choose_file(files[0]);
     }
   }
 
+  /** world: the name of the shown world. */
   update(world: string): void {
     const names = this.#server.worlds.filter((one) => !one.replay && one.name !== world).map((one) => String(one.name));
     const {file} = this.#comparison, compared = this.#comparison.world;

@@ -51,6 +51,7 @@ export class GeneChoice {
     return `${this.#gene}/${this.#group.value}`;
   }
 
+  /** Chooses a gene. */
   show(world: ViewedWorld, gene: string): void {
     this.#gene = gene;
     const groups = groups_of(world), group = groups[world.gene_names.indexOf(gene)];

@@ -5,6 +5,7 @@ import {actor_text} from "../texts/users";
 import {values_text} from "../world/change_text";
 import type {Mark} from "./plot_layout";
 
+/** Returns the marks of AppliedChange messages in a plot over generations. */
 export function marks_of(changes: readonly AppliedChange[]): (Mark&{label: string})[] {
   return changes.map((change) => ({
                        x: change.generation ?? 0,

@@ -26,6 +26,7 @@ export class Comparison {
   #reading = 0; // number of the last file that was chosen
   #revision = 0;
 
+  /** on_change: called after each change. */
   constructor(server: Server, on_change: () => void) {
     this.#server = server;
     this.#on_change = on_change;
@@ -74,6 +75,7 @@ export class Comparison {
     }
   }
 
+  /** Chooses a run of the compared file. */
   choose_run(run: number): void {
     if (this.#file !== null) {
       this.#set(null, {...this.#file, run, table: table_of(this.#file.csv, run)});

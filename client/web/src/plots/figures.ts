@@ -11,8 +11,10 @@ export type Quantity = "fitness"|"genes"|"selection"|"diversity"|"survivors"|"de
 export const quantities: readonly Quantity[] =
   ["fitness", "genes", "selection", "diversity", "survivors", "deaths", "food"];
 
+/** The maximum number of genes in one plot. */
 export const genes_in_plot_max = 12;
 
+/** One history in a plot. */
 export interface Subject {
   table: HistoryTable;
   island: Island;
@@ -185,6 +187,7 @@ function gene_column(subject: Subject, gene: string, part: GenePart|AccountPart)
   return index >= 0 ? `gene:${index}:${part}` : null;
 }
 
+/** What figure_of() plots. */
 export interface FigureRequest {
   quantity: Quantity;
   subject: Subject;
@@ -194,6 +197,7 @@ export interface FigureRequest {
   window: number; // generations of the running mean of each line and band; 1: none
 }
 
+/** Builds the plot of a quantity. */
 export function figure_of(request: FigureRequest): PlotContent {
   const make = new FigureBuilder(request.subject, request.other, request.window), {content} = make;
   switch (request.quantity) {

@@ -25,6 +25,7 @@ export class FitnessCurve {
     this.element = this.#plot.element;
   }
 
+  /** Draws the history of the world if it has changed. */
   update(world: ViewedWorld): void {
     this.#table.set_history(world.history.generations);
     if (

@@ -16,11 +16,13 @@ const gene_parts: readonly GenePart[] = ["mean", "deviation", "min", "max"];
 const account_parts: readonly AccountPart[] = ["selection", "transmission", "migration", "change"];
 const island_max = 65535, generation_max = 2 ** 32;
 
+/** Statistics that a file contains. */
 export type Statistics = GenerationStatistics&{
   generation: number;
   island: number
 };
 
+/** The statistics of one run in a file. */
 export interface CsvRun {
   name: string; // the columns that distinguish the runs of the file: "cell 0, replicate 1"; empty: the only run
   history: Statistics[]; // ordered by generation

@@ -7,6 +7,7 @@ import type {GeneAccount, GenerationStatistics, GeneStatistics} from "../core/pr
 
 export type Island = number|null; // null: all islands together
 
+/** The numbers of GenerationStatistics. */
 export type NumberColumn = Exclude<keyof GenerationStatistics, "genes">;
 export type GenePart = Exclude<keyof GeneStatistics, "account">;
 export type AccountPart = keyof GeneAccount;
@@ -82,6 +83,7 @@ export class HistoryTable {
     }
   }
 
+  /** Removes the first generations, which contain `count` messages. */
   #drop(count: number): void {
     let generations = 0;
     for (let left = count; left > 0; ++generations) {

@@ -28,6 +28,7 @@ export class LinkedX {
     return this.#range !== null;
   }
 
+  /** The range of x of all linked plots. */
   whole(): Range {
     let whole: Range|null = null;
     for (const plot of this.#plots) {
@@ -43,11 +44,13 @@ export class LinkedX {
     return this.#range === null ? this.whole() : zoomed(this.#range, 0, 1, this.whole(), units_min);
   }
 
+  /** Shows a part of the axis. */
   show(range: Range): void {
     const whole = this.whole();
     this.#set(range.min <= whole.min && range.max >= whole.max ? null : range);
   }
 
+  /** Shows the whole axis. */
   fit(): void {
     this.#set(null);
   }

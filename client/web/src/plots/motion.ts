@@ -40,6 +40,7 @@ function tick_of(motion: Motion): number {
   return motion.tick ?? 0;
 }
 
+/** A quantity that the panel plots. */
 export interface Measure {
   name: string;
   unit: string;
@@ -62,6 +63,7 @@ export const measures: readonly Measure[] = [
   {name: texts.movement, unit: texts.radii, colour: "sky", of: (motion) => motion.fastest_step_share ?? 0},
 ];
 
+/** Builds the plot of a measure over the ticks. */
 export function motion_figure(
   {name, unit, colour, of, is_count = false}: Measure, motions: readonly Motion[]): PlotContent {
   const last = motions[motions.length - 1];

@@ -73,6 +73,7 @@ export class Plot implements LinkedPlot {
     });
   }
 
+  /** Ends the plot. */
   close(): void {
     this.#observer.disconnect();
     this.#link.remove(this);
@@ -91,6 +92,7 @@ export class Plot implements LinkedPlot {
     this.redraw();
   }
 
+  /** Shows the whole x axis. */
   fit(): void {
     this.#link.fit();
   }
@@ -99,6 +101,7 @@ export class Plot implements LinkedPlot {
     return x_extent(this.#content.series);
   }
 
+  /** Draws with the next animation frame. */
   redraw(): void {
     if (this.#request === 0) {
       this.#request = requestAnimationFrame(() => {
@@ -147,6 +150,7 @@ export class Plot implements LinkedPlot {
     this.#draw(); // at once, because the canvas is empty now
   }
 
+  /** Clears a canvas. Returns its context, in CSS pixels. */
   #cleared(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
     // This option makes the browser draw without the graphics processor: lines of thousands of numbers would block it
     // for seconds where it is emulated.

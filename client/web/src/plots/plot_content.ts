@@ -45,6 +45,7 @@ export interface PlotContent {
   counted_x?: boolean; // x contains whole numbers: no ticks between them
 }
 
+/** What is drawn of a content. */
 export interface PlotView {
   content: PlotContent;
   visible: Series[]; // those that the user has not switched off
@@ -52,6 +53,7 @@ export interface PlotView {
   axes: boolean; // false: only the lines and marks
 }
 
+/** Returns the series that the legend lists. */
 export function listed_series(series: readonly Series[]): Series[] {
   return series.filter((one) => one.in_legend !== false && one.name !== "");
 }

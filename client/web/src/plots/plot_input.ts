@@ -17,6 +17,7 @@ interface Point {
   y: number;
 }
 
+/** What the input acts on. */
 export interface PlotTarget {
   readonly area: HTMLElement;
   readonly cursor: PlotCursor;
@@ -77,9 +78,12 @@ export class PlotInput {
     }
   }
 
+  /** The x of the numbers that are nearest to a column of pixels. */
   #x_near(frame: Frame, pixels: number): number|null {
     return x_near(frame, this.#target.view().content.series, pixels);
   }
+
+  // ---- pointers ----
 
   #place_of(event: MouseEvent): Point {
     const box = this.#target.area.getBoundingClientRect();
@@ -209,6 +213,8 @@ export class PlotInput {
     const notches = Math.min(Math.abs(event.deltaY) / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3), 3);
     link.zoom(frame.x, Math.min(Math.max(share, 0), 1), Math.pow(zoom_of_one_notch, zooms_out ? -notches : notches));
   }
+
+  // ---- keys ----
 
   #key_down(event: KeyboardEvent): void {
     const frame = this.#target.frame();

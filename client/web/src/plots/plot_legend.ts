@@ -97,6 +97,7 @@ export class PlotLegend {
   }
 }
 
+/** A sample of the style of a series. */
 export function swatch_of(series: Series): SVGElement {
   return swatch(series.colour, series.kind, series.dash ?? [], series.thickness ?? thickness_default);
 }

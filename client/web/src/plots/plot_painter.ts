@@ -11,6 +11,7 @@ import type {PlotTheme} from "./plot_theme";
 const raw_alpha = 0.38, dense_alpha = 0.5, faded_alpha = 0.18;
 export const mark_pixels = 5; // marks nearer than this are drawn as one and read together
 
+/** A plot while it is painted. */
 interface Sheet {
   context: CanvasRenderingContext2D;
   theme: PlotTheme;
@@ -63,6 +64,8 @@ function alpha_of(view: PlotView, series: Series): number {
   return view.highlighted !== "" && view.highlighted !== series.name ? faded_alpha : 1;
 }
 
+// ---- axes ----
+
 function paint_axes({context, theme, view, frame}: Sheet, box: Box): void {
   const {area} = frame;
   context.lineWidth = 1;
@@ -100,6 +103,8 @@ function paint_axes({context, theme, view, frame}: Sheet, box: Box): void {
   context.fillText(view.content.x_label, (area.left + area.right) / 2, area.bottom + 30);
   context.textAlign = "left";
 }
+
+// ---- series ----
 
 function paint_series(sheet: Sheet, series: Series): void {
   const {context, theme, frame} = sheet;
@@ -207,6 +212,8 @@ function paint_bar(
   const top = row(frame, to);
   context.fillRect(left, top, right - left, row(frame, from) - top);
 }
+
+// ---- marks ----
 
 function paint_marks(sheet: Sheet): void {
   const {context, theme, view, frame} = sheet;

@@ -56,6 +56,7 @@ export function zoom_min(canvas: Size, island: Size): number {
   return zoom_to_fit(canvas, island) / 2;
 }
 
+/** The camera that shows the whole island. */
 export function fitted(canvas: Size, island: Size, frame = pane_frame): Camera {
   return {x_px: island.width / 2, y_px: island.height / 2, zoom: zoom_to_fit(canvas, island, frame)};
 }
@@ -83,6 +84,7 @@ export function to_world(camera: Camera, canvas: Size, screen: Point): Point {
   };
 }
 
+/** Moves the drawn island by this many pixels. */
 export function panned(camera: Camera, canvas: Size, island: Size, by: Point): Camera {
   return clamped(
     {...camera, x_px: camera.x_px - by.x / camera.zoom, y_px: camera.y_px - by.y / camera.zoom}, canvas, island);
@@ -104,6 +106,7 @@ export function same_part(camera: Camera, from: Size, to: Size, canvas: Size): C
     {x_px: (camera.x_px / from.width) * to.width, y_px: (camera.y_px / from.height) * to.height, zoom}, canvas, to);
 }
 
+/** The visible part of the world. */
 export function visible_part(camera: Camera, canvas: Size): Rectangle {
   const corner = to_world(camera, canvas, {x: 0, y: 0});
   return {left: corner.x, top: corner.y, width: canvas.width / camera.zoom, height: canvas.height / camera.zoom};
@@ -118,6 +121,8 @@ export function is_whole_island_visible(camera: Camera, canvas: Size, island: Si
   const visible = visible_part(camera, canvas);
   return contains(visible, {x: 0, y: 0}) && contains(visible, {x: island.width, y: island.height});
 }
+
+// ---- minimap ---------------------------------------------------------------------------------------------------
 
 export interface MinimapPlace {
   screen: Rectangle;

@@ -21,6 +21,7 @@ import {add_paths, flash_shown_s, trail_kept_s} from "./traces";
 /** Per px of the island, or per pixel: finer than positions in snapshots, as overlays are at interpolated places. */
 export const overlay_steps = 1024;
 
+/** Shapes that are computed in each frame. */
 class Overlay {
   #staging = new Int32Array(8 * 64);
   #table: Table|null = null; // until something is drawn first

@@ -42,6 +42,7 @@ export class Table {
     this.#gl.deleteTexture(this.#texture);
   }
 
+  /** Replaces the first `texels` texels. */
   update(source: Int32Array, texels: number): void {
     const row = row_texels * this.#channels;
     const end = texels * this.#channels;

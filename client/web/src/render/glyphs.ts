@@ -60,6 +60,7 @@ export class Glyphs {
     return this.#advances[index]!;
   }
 
+  /** The width of a text in CSS pixels. */
   measure(text: string): number {
     let width = 0;
     for (const character of text) {

@@ -85,6 +85,7 @@ export interface TileDensity {
   organisms: Int32Array;
 }
 
+/** A copy of a snapshot. */
 export class KeptSnapshot {
   info: SnapshotInfo|null = null;
   count = 0; // organisms in full detail

@@ -15,6 +15,7 @@ import {labels_of} from "./scene_labels";
 import {StreamedIsland} from "./streamed_island";
 import {StreamedRegion, type WantedView} from "./streamed_region";
 
+/** What the page sets. */
 export interface ViewSettings {
   place: Place;
   camera: Camera|null; // null: the whole island, also after a change of the size
@@ -78,6 +79,7 @@ export class IslandView {
     this.#is_dirty = true;
   }
 
+  /** Drops the snapshots. Call it before another world or island is shown. */
   clear(): void {
     this.island.clear();
     this.region.forget();
@@ -117,6 +119,7 @@ export class IslandView {
                                          clamped(camera, place, size);
   }
 
+  /** What is drawn at a point; see picked_at(). */
   pick(x: number, y: number, radius: number): Picked|null {
     const camera = this.#drawn_camera;
     return camera && picked_at({x, y}, radius, camera, this.settings.place, this.island.at, this.#drawn_blend);

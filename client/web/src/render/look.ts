@@ -24,6 +24,8 @@ export function packed(colour: Colour): number {
   return colour[0] | (colour[1] << 8) | (colour[2] << 16) | (colour[3] << 24);
 }
 
+// ---- colours ---------------------------------------------------------------------------------------------------
+
 /** Colours for categories. Source: Okabe & Ito 2002, "Color Universal Design", without black. */
 export const kinds: readonly Colour[] = [
   rgb(230, 159, 0),
@@ -100,6 +102,8 @@ function variant(look: Look): "dark"|"light"|"classic" {
 export function colours_of(look: Look): IslandColours {
   return island_colours[variant(look)];
 }
+
+// ---- styles ----------------------------------------------------------------------------------------------------
 
 export type Form = "circle"|"rectangle"|"line"|"arrow"|"body"|"leaf"|"star"|"ripple"|"soft_line";
 
@@ -236,6 +240,8 @@ export function default_look(skin: Look["skin"], background: Look["background"],
     minimap: true,
   };
 }
+
+// ---- colour scales ---------------------------------------------------------------------------------------------
 
 /** Colour ramps for numbers; lightness rises with the number. Source: viridis and cividis: every 15th of the 256
  *  colours of matplotlib. Viridis: S. van der Walt and N. Smith, 2015. Cividis: Nuñez, Anderton & Renslow 2018,

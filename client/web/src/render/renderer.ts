@@ -102,6 +102,7 @@ export class Renderer {
     }
   }
 
+  /** Drops the snapshots. Call it before another world or island is shown. */
   clear(): void {
     this.#all().forEach((view) => view.clear());
   }

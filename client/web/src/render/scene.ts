@@ -34,7 +34,9 @@ export interface Scene {
 }
 
 export interface Painter {
+  /** The width of a label's text in CSS pixels. */
   measure(text: string, ratio: number): number;
+  /** Draws into scene.place. */
   draw(scene: Scene): void;
   /** Frees the memory. Call it before the painter is dropped while the canvas stays. */
   close(): void;

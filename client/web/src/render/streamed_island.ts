@@ -47,6 +47,7 @@ export class StreamedIsland {
     ++this.whole_version;
   }
 
+  /** Drops the snapshots. */
   clear(): void {
     this.at.clear();
     this.trails.clear();

@@ -118,6 +118,8 @@ export function add_paths(
   return count;
 }
 
+// ---- flashes ---------------------------------------------------------------------------------------------------
+
 export interface Flash {
   kind: "food"|"poison"|"death";
   x_px: number;

@@ -85,6 +85,7 @@ export const breeding_texts = {
   weight_is_difference: " The weight is the fitness minus the lowest fitness.",
   weight_is_of_rank: " The weight depends on the rank alone.",
 
+  /** "Roulette with windowing · hybrid · 50 organisms, 25 picks: 25 survivors and 25 children" */
   summary: (breeding: {
     method: string;
     tournament_size: number|null; // null: no tournament
@@ -134,12 +135,17 @@ export const breeding_texts = {
     MUTATION_KIND_BIT_FLIP: "bit flip",
     MUTATION_KIND_CLAMP: "clamped",
   },
+  /** "hidden3<bias: 0.42 of parent 12, creep to 0.5"
+   *
+   *  parent      null: a mean of both parents
+   *  moved_from  the index of the gene from which it moved; null: it did not */
   gene_origin: (
     gene: string, value: number, parent: number|null, moved_from: number|null,
     changes: readonly {how: string; after: number}[]): string =>
     `${gene}: ${gene_text(value)}${parent === null ? ", a mean of both parents" : ` of parent ${parent}`}` +
     (moved_from === null ? "" : `, moved from gene ${moved_from + 1}`) +
     changes.map(({how, after}) => `, ${how} to ${gene_text(after)}`).join(""),
+  /** "66 other genes: 35 of parent 12, 31 of parent 45, 4 mutated" */
   other_genes: (
     count: number, {first, second, blended, from_second, mutated}:
       {first: number; second: number; blended: boolean; from_second: number; mutated: number}): string =>

@@ -64,6 +64,7 @@ export const bet_texts = {
 
 export const account_texts = {
   unnamed_gene: (gene: number): string => `gene ${gene}`,
+  /** "The mean of normal speed rose by 0.3: selection +0.4, transmission −0.1, migration 0." */
   change: ({name, change, selection, transmission, migration}:
              {name: string; change: number; selection: number; transmission: number; migration: number}): string =>
     `The mean of ${name} ${

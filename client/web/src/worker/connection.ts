@@ -83,6 +83,7 @@ export class Connection {
     }
   }
 
+  /** Sends what the core has queued. */
   flush(): void {
     if (this.#socket?.readyState === WebSocket.OPEN) {
       const bytes = this.core?.outgoing();

@@ -85,6 +85,7 @@ export class Feed {
     this.forget();
   }
 
+  /** Forgets the subscriptions, because their session has ended. */
   forget(): void {
     this.subscription = this.overview = null;
   }

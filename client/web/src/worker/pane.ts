@@ -10,6 +10,7 @@ import {Feed} from "./feed";
 const report_ms = 50, drawing_report_ms = 200, tiles_report_ms = 300; // least time between two messages
 const healthiest_count = 5;
 
+/** The messages of the page about one pane. */
 export type ForPane =
   Exclude<ToWorker, {kind: "connect" | "request" | "events_taken" | "visible" | "ask_figures" | "close_pane"}>;
 
@@ -35,6 +36,7 @@ export class WorkerPane {
     this.feed = new Feed(connection);
   }
 
+  /** Subscribes to what the pane shows. Replaces the last subscriptions. */
   start(): void {
     this.#undrawn = [];
     this.feed.start(this.#renderer);
@@ -210,6 +212,7 @@ export class WorkerPane {
     this.start();
   }
 
+  /** Shows all islands as tiles, or only the chosen one, whose snapshots stay. */
   #show_islands(islands: number): void {
     if (islands === this.feed.islands) {
       return;

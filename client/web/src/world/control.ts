@@ -40,15 +40,18 @@ export class RunControl {
     return this.#assumed.speed ?? (newer_snapshot ? newer_snapshot.speed : info?.speed);
   }
 
+  /** Whether the run or the replay has ended. */
   get is_over(): boolean {
     return this.state === "RUN_STATE_TERMINATED" || this.at_end;
   }
 
+  /** Whether a replay shows its last stored moment. */
   get at_end(): boolean {
     const replay = this.#feed.info?.replay;
     return replay !== undefined && this.state !== "RUN_STATE_RUNNING" && this.#feed.tick >= (replay.last_tick ?? 0);
   }
 
+  /** Another world is shown. */
   forget(): void {
     this.#assumed = {};
     this.#nothing_to_resume = false;

@@ -85,6 +85,8 @@ export class ParameterEdits {
   #reversible: {[verb in Verb]: Change[][]} = {undo: [], redo: []}; // newest last
   #edit_number = 0; // counts the changes of edits
 
+  // ---- what the server reports ----
+
   /** Sets the registry and clears everything else. */
   describe(registry: readonly ParameterDescription[]): void {
     this.registry = registry;

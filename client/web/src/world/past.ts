@@ -199,6 +199,7 @@ export class Past {
     }
   }
 
+  /** Closes the replay, if one is open or being opened. */
   close(): void {
     this.#moment = null;
     this.#seek_number += 1;

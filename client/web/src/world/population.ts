@@ -44,6 +44,7 @@ export class PopulationReader {
     this.#read_of = "";
   }
 
+  /** Organisms were placed: the columns lack them. */
   lacks_placed(): void {
     this.#placed = true;
   }

@@ -230,6 +230,8 @@ export class Server {
     });
   }
 
+  // ---- messages of the worker ----
+
   #take(message: FromWorker): void {
     switch (message.kind) {
       case "rules":

@@ -41,6 +41,7 @@ export class Tokens {
     return works ? null : this.use(linked);
   }
 
+  /** The page connects with this token. */
   use(token: string): string {
     this.used = token;
     this.offered = null;
@@ -48,10 +49,12 @@ export class Tokens {
     return token;
   }
 
+  /** The user keeps the present token. */
   decline(): void {
     this.offered = null;
   }
 
+  /** A session has begun. */
   opened(): void {
     this.#working = this.used;
   }

@@ -55,6 +55,8 @@ export class ViewedWorld {
     );
   }
 
+  // ---- what is shown ----
+
   /** Name of the world that is drawn: `name`, or the replay's world. */
   get shown(): string {
     return this.feed.world;
@@ -132,6 +134,8 @@ export class ViewedWorld {
     this.parameters.set = null;
     this.control.forget();
   }
+
+  // ---- what the worker and the server report ----
 
   #take(message: FromWorker): void {
     if (message.kind === "state") {
