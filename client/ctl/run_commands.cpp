@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -59,11 +60,34 @@ void add_population(const std::string& path, v1::CreateWorld& command) {
     }
 }
 
+/// The world that a command names by a value, by --world, or by both if they agree. A value replaces EVOD_WORLD.
+///
+/// value    "NAME" or "WORLD", as the help names it.
+/// returns  empty: no world was named.
+std::string world_of(const Common& common, const std::string& value, const std::string& given) {
+    const char* const of_environment = std::getenv("EVOD_WORLD");
+    const bool by_option = !common.world.empty() && (of_environment == nullptr || common.world != of_environment);
+    if (by_option && !given.empty() && given != common.world) {
+        throw Stop{ExitCode::Usage,
+                   value + " and --world name two worlds: got " + given + " and " + common.world + ", allowed one"};
+    }
+    return given.empty() ? common.world : given;
+}
+
+std::string required_world_of(const Common& common, const std::string& value, const std::string& given) {
+    std::string world = world_of(common, value, given);
+    if (world.empty()) {
+        throw Stop{ExitCode::Usage, value + ": got nothing, a value is required"};
+    }
+    return world;
+}
+
 void create(const Common& common, const CreateOptions& options) {
+    const std::string name = required_world_of(common, "NAME", options.name);
     Caller caller{common};
     v1::Request request;
     auto& command = *request.mutable_create_world();
-    command.set_name(options.name);
+    command.set_name(name);
     if (!options.population.empty()) {
         add_population(options.population, command);
     }
@@ -89,7 +113,8 @@ void create(const Common& common, const CreateOptions& options) {
     });
 }
 
-void remove(const Common& common, const std::string& name) {
+void remove(const Common& common, const std::string& given) {
+    const std::string name = required_world_of(common, "WORLD", given);
     Caller caller{common};
     v1::Request request;
     request.mutable_delete_world()->set_world(name);
@@ -117,10 +142,11 @@ struct ForkOptions {
 };
 
 void fork(const Common& common, const ForkOptions& options) {
+    const std::string origin = world_of(common, "WORLD", options.origin);
     Caller caller{common};
     v1::Request request;
     auto& command = *request.mutable_fork_world();
-    command.set_world(options.origin.empty() ? common.world : options.origin);
+    command.set_world(origin);
     command.set_name(options.name);
     if (options.at_generation) {
         command.set_at_generation(*options.at_generation);
@@ -256,7 +282,7 @@ v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached
         if (Clock::now() >= look_at) {
             v1::WorldInfo world = caller.world(begun.name());
             if (world.run_id() != begun.run_id()) {
-                throw Stop{ExitCode::Refused, begun.name() + " was reset meanwhile"};
+                throw Stop{ExitCode::Refused, begun.name() + " was reset before the run was over"};
             }
             progress.show(world.storage());
             progress.show(world);
@@ -439,8 +465,8 @@ void add_world_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Worlds";
     auto& create_command = app.add_command("create", "Create a world; `run` starts it").group(group);
     auto& options = create_command.keep(CreateOptions{});
-    create_command.add_option("NAME", &options.name, "Name of the world: 1 to 64 characters of a-z A-Z 0-9 _ -")
-        .required();
+    create_command.add_option("NAME", &options.name,
+                              "Name of the world: 1 to 64 characters of a-z A-Z 0-9 _ -; default: that of --world");
     create_command
         .add_option("--seed", &options.seed,
                     "Seed; default: the seed in the --experiment file, otherwise a random seed")
@@ -457,7 +483,7 @@ void add_world_commands(command_line::Command& app, const Common& common) {
 
     auto& delete_command = app.add_command("delete", "Remove a world and its history").group(group);
     auto& name = delete_command.keep(std::string{});
-    delete_command.add_option("WORLD", &name, "Name of the world").required();
+    delete_command.add_option("WORLD", &name, "Name of the world; default: the world of --world");
     delete_command.action([&] { remove(common, name); });
 
     auto& fork_command =

@@ -1,9 +1,7 @@
 #!/usr/bin/python3
-"""Makes page.png, page_tablet.png, glass_box_picks.png and glass_box_child.png, the images of the page in a browser:
-docs/images/page.py. Build the preset release first.
+"""Makes the images of the page in a browser: docs/images/page.py. Build the preset release first.
 
-They show a world of seed 7. The packages python3-selenium, python3-pil and
-chromium-driver are needed.
+They show a world of seed 7. The packages python3-selenium, python3-pil and chromium-driver are needed.
 """
 import base64
 import io
@@ -13,6 +11,7 @@ import sys
 import tempfile
 
 from PIL import Image
+from selenium.webdriver.support.ui import Select
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -21,7 +20,7 @@ import browser  # noqa: E402
 import waiting  # noqa: E402
 
 BIN = ROOT / "build/release/bin"
-PORT, HTTP_PORT = 7790, 7791
+PORT, HTTP_PORT = 42790, 42791
 BYTES_MAX = 200_000
 
 
@@ -33,7 +32,11 @@ def evoctl(*arguments, check=True):
 
 def save(page, name, part=None):
     """Saves the whole page, or the part of it that a CSS selector names."""
-    page.run("document.activeElement.blur()")
+    page.run("""document.activeElement.blur();
+        document.querySelectorAll(".column, .column *").forEach((element) => { element.scrollTop = 0; });""")
+    page.result("""(async () => {
+        for (let frame = 0; frame < 30; ++frame) await new Promise(requestAnimationFrame);
+    })()""")  # the worker draws meanwhile
     clip = part and page.value("""(({ x, y, width, height }) =>
             ({ x: x - 8, y: y - 8, width: width + 16, height: height + 16, scale: 1 }))(
         document.querySelector(arguments[0]).getBoundingClientRect())""", part)
@@ -79,6 +82,23 @@ def show_breeding(page):
     save(page, "glass_box_child.png", ".glass-box")
 
 
+def show_panels(page):
+    """Saves panels of the column: some parameters, plots and the family tree."""
+    page.resize(1280, 1700)
+    page.panel("Parameters")
+    page.type_into(page.element("[data-panel=parameters] input[type=search]"), "poison count")
+    page.wait("!document.querySelector('[data-panel=parameters]').innerText.includes('Poison harm')", "the search")
+    save(page, "page_parameters.png", "[data-panel=parameters]")
+    page.panel("Plots")
+    page.wait_for_text("compare with", "[data-panel=plots]")
+    page.wait("document.querySelector('[data-panel=plots] canvas')", "a plot")
+    save(page, "page_plots.png", "[data-panel=plots]")
+    page.panel("Family tree")
+    Select(page.element("select[aria-label='What to show']")).select_by_visible_text("whole generation")
+    page.wait_for_text("common ancestor", "[data-panel=family]")
+    save(page, "page_family_tree.png", "[data-panel=family]")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         server = subprocess.Popen([BIN / "evod", "--port", str(PORT), "--web", "--http-port", str(HTTP_PORT), "--seed",
@@ -90,10 +110,12 @@ def main():
             evoctl("run", "14", "--wait")
             evoctl("speed", "1")
             page = browser.Browser("--lang=en")
+            page.resize(1280, 860)
             page.open(f"http://127.0.0.1:{HTTP_PORT}/")
             show(page, 33_900, "Worlds", "Islands of default")
             save(page, "page.png")
             show_breeding(page)
+            show_panels(page)
             page.cdp("Emulation.setTouchEmulationEnabled", enabled=True)
             page.cdp("Emulation.setDeviceMetricsOverride", width=820, height=1180, deviceScaleFactor=1, mobile=True)
             page.open(f"http://127.0.0.1:{HTTP_PORT}/")

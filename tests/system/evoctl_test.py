@@ -265,6 +265,38 @@ class Commands(WithServer):
         self.assertIn("--at-generation: got 9, allowed 1 to 3",
                       self.evoctl("fork", "default", "--at-generation", "9", "--name", "x", status=1))
 
+    def test_a_world_is_named_by_value_or_option(self):
+        listing = self.evoctl("--help")
+        commands = re.findall(r"^  ([a-z]+) {2,}\S", listing, re.M)
+        self.assertIn("fork", commands)
+        value_of = {"create": "NAME", "delete": "WORLD", "fork": "WORLD"}  # those whose value names a world
+        for command in commands:
+            usage = self.evoctl(command, "--help").split("\n\n")[0]
+            if command not in value_of:
+                self.assertNotIn("WORLD", usage, command)
+        further = {"fork": ("--name", "forked")}
+        for command, value in value_of.items():
+            rest = further.get(command, ())
+            for given in (("{}",), ("--world", "{}"), ("{}", "--world", "{}")):
+                for before in (True, False):  # the options of evoctl stand before the command or after it
+                    with self.subTest(command, given=given, before=before):
+                        self.evoctl("create", "forked" if command == "create" else "one")
+                        name = "one"
+                        words = [word.format(name) for word in given]
+                        options = words[words.index("--world"):] if "--world" in words else []
+                        values = words[:len(words) - len(options)]
+                        self.evoctl(*(options if before else ()), command, *values, *rest,
+                                    *(() if before else options))
+                        for world in self.evoctl("worlds").split():
+                            if world != "default":
+                                self.evoctl("delete", world)
+            self.assertIn(f"{value} and --world name two worlds: got one and two, allowed one",
+                          self.evoctl("--world", "two", command, "one", *rest, status=2))
+            self.assertIn(f"{value} and --world name two worlds: got one and two, allowed one",
+                          self.evoctl(command, "one", *rest, "--world", "two", status=2))
+        for command in ("create", "delete"):
+            self.assertIn(f"{value_of[command]}: got nothing, a value is required", self.evoctl(command, status=2))
+
     def test_earlier_generations_are_shown(self):
         self.evoctl("create", "small", "--seed", "3", "--set", "generation_s=2")
         self.evoctl("--world", "small", "speed", "max")

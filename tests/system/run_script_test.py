@@ -1,4 +1,4 @@
-"""scripts/run on a terminal, without compiling. EVOD and EVOCTL name the programs."""
+"""scripts/run on a terminal, without compiling and without windows. EVOD and EVOCTL name the programs."""
 import contextlib
 import os
 import pathlib
@@ -25,6 +25,16 @@ print("the server waits", flush=True)
 for number in (1, 2):
     print("signal", number, signal.Signals(signal.sigwait(ends)).name, flush=True)
 """
+#: Stands for evoview or a browser: notes its arguments and does not end.
+WINDOW = """#!/bin/sh
+echo "$@" >"$0.arguments"
+exec sleep 1000
+"""
+#: What scripts/run finds in a shell that has neither xdg-open's browsers nor wslview.
+NO_BROWSER = {
+    "BASH_FUNC_command%%": "() { case ${*: -1} in x-www-browser | wslview) return 1 ;; esac; builtin command \"$@\"; }",
+    "BASH_FUNC_xdg-settings%%": "() { :; }",
+}
 
 
 def unused_port():
@@ -74,7 +84,7 @@ class Run(unittest.TestCase):
         (self.root / "scripts").mkdir()
         for name in ("run", "common"):
             shutil.copy(ROOT / "scripts" / name, self.root / "scripts")
-        self.executable("scripts/setup", "#!/bin/sh\n")
+        self.executable("scripts/setup", "#!/bin/sh\necho setup: \"$@\"\n")
         self.bin = self.root / "build/release/bin"
         self.bin.mkdir(parents=True)
         (self.root / "build/release/build.ninja").touch()
@@ -84,22 +94,79 @@ class Run(unittest.TestCase):
         (self.root / path).write_text(text)
         (self.root / path).chmod(0o755)
 
-    def started(self):
-        options = ["--port", unused_port(), "--http-port", "0", "--data", str(self.root / "data")]
+    def link_programs(self):
+        for name in ("evod", "evoctl"):
+            (self.bin / name).symlink_to(os.environ[name.upper()])
+
+    def started(self, *options, **environment):
+        options = [*options, "--port", unused_port(), "--http-port", unused_port(), "--data", str(self.root / "data")]
         # bash prefers the function to the program cmake, so nothing is built.
-        environment = {"BASH_FUNC_cmake%%": "() { :; }", "DISPLAY": "", "WAYLAND_DISPLAY": ""}
+        environment = {"BASH_FUNC_cmake%%": "() { echo cmake: \"$@\" >&2; }", "DISPLAY": "", "WAYLAND_DISPLAY": "",
+                       "BROWSER": "", **environment}
         self.addCleanup(end_descendants)
         return Terminal([str(self.root / "scripts/run"), *options], **environment)
 
-    def test_an_interrupt_ends_the_server_with_one_signal(self):
-        for name in ("evod", "evoctl"):
-            (self.bin / name).symlink_to(os.environ[name.upper()])
-        terminal = self.started()
-        terminal.until("No display")
+    def arguments(self, program):
+        """Waits until a WINDOW has been opened; returns its arguments."""
+        path = self.root / (program + ".arguments")
+        waiting.until(lambda: path.exists() and path.read_text(), f"{program} opened")
+        return path.read_text().strip()
+
+    def interrupted(self, terminal):
         os.write(terminal.end, CTRL_C)
         self.assertEqual(terminal.status(), 130, terminal.text)
+        return terminal.text
+
+    def test_an_interrupt_ends_the_server_with_one_signal(self):
+        self.link_programs()
+        terminal = self.started()
+        terminal.until("No display")
+        self.interrupted(terminal)
         self.assertEqual(re.findall(r"SIG\w+(?::| again:)[^\r]*", terminal.text), ["SIGTERM: shutting down"],
                          terminal.text)
+
+    def test_a_display_with_a_browser_opens_the_page(self):
+        self.link_programs()
+        self.executable("browser", WINDOW)
+        terminal = self.started(DISPLAY=":1", BROWSER=str(self.root / "browser"))
+        terminal.until("Ctrl-C ends the server")
+        page = re.search(r"In a browser: (\S+)", terminal.text)[1]
+        self.assertEqual(self.arguments("browser"), page)
+        text = self.interrupted(terminal)  # the browser still runs
+        self.assertIn("setup: build\r", text)
+        self.assertNotRegex(text, "cmake: .*(evoview|VIEWER=ON)")
+
+    def test_xdg_open_opens_the_page(self):
+        self.link_programs()
+        terminal = self.started(DISPLAY=":1", **{
+            **NO_BROWSER, "BASH_FUNC_xdg-settings%%": "() { echo a.desktop; }", "BASH_FUNC_xdg-open%%": "() { :; }",
+            "BASH_FUNC_setsid%%":
+                "() { case $1 in xdg-open) echo opens: \"$2\" >/dev/tty ;; *) exec setsid \"$@\" ;; esac; }"})
+        terminal.until("opens: http")
+        self.interrupted(terminal)
+
+    def test_viewer_opens_evoview_as_asked(self):
+        self.link_programs()
+        self.executable("build/release/bin/evoview", WINDOW)
+        terminal = self.started("--viewer", DISPLAY=":1", BROWSER="true")
+        self.assertRegex(self.arguments("build/release/bin/evoview"), r"^--server 127\.0\.0\.1:\d+$")
+        text = self.interrupted(terminal)
+        self.assertIn("In a browser: http", text)
+        self.assertIn("setup: build viewer\r", text)
+        self.assertRegex(text, "cmake: .*VIEWER=ON")
+        self.assertRegex(text, "cmake: .*--target evoview")
+
+    def test_a_display_without_a_browser_opens_evoview(self):
+        self.link_programs()
+        self.executable("build/release/bin/evoview", WINDOW)
+        terminal = self.started(DISPLAY=":1", **NO_BROWSER)
+        self.arguments("build/release/bin/evoview")
+        self.assertIn("In a browser: http", self.interrupted(terminal))
+
+    def test_the_viewer_needs_a_display(self):
+        terminal = self.started("--viewer")
+        self.assertEqual(terminal.status(), 2, terminal.text)
+        self.assertIn("--viewer needs a display", terminal.text)
 
     def test_a_second_interrupt_reaches_the_server(self):
         (self.bin / "evoctl").symlink_to(os.environ["EVOCTL"])

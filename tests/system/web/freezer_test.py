@@ -70,6 +70,8 @@ class Freezer(Case):
         genes = self.genes("default")
         self.assertEqual(len(genes), 40)
         numpy.testing.assert_array_equal(genes[30:], [genes[healthiest]] * 10)
+        browser.press("Undo")  # all copies were one change
+        browser.wait_for_text("Undone: placed 10 organisms.", ".notices")
 
     def test_a_click_places_a_copy(self):
         browser = self.browser

@@ -90,10 +90,9 @@ class Past(Case):
         self.shown(3, 60)
         browser.take_part()
         browser.press("Fork")
-        self.control.wait_world(lambda world: world.name == "default-2", "default-2")
+        browser.wait("evod.app.areas.length === 2", "two worlds")
         fork = self.control.world("default-2")
         self.assertEqual((fork.generation, fork.generation_tick, fork.state_hash), (3, 60, self.over_tcp(3, 60)))
-        browser.wait("evod.app.areas.length === 2", "two worlds")
         browser.wait("evod.app.areas.every((area) => area.world.snapshot?.state_hash === arguments[0])",
                      "both at the same state", fork.state_hash)
         self.assertEqual(browser.value("evod.app.areas.map((area) => area.world.name)"), ["default", "default-2"])

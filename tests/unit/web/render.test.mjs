@@ -125,8 +125,10 @@ test("zoom and centre stay in their ranges", () => {
   const fit = render.fitted(canvas, island);
   assert.equal(render.zoomed(fit, canvas, island, { x: 0, y: 0 }, 1e-9).zoom, fit.zoom / 2);
   assert.equal(render.zoomed(fit, canvas, island, { x: 0, y: 0 }, 1e9).zoom, 64);
-  const far = render.panned(fit, canvas, island, { x: -1e6, y: 1e6 });
-  assert.deepEqual([far.x_px, far.y_px], [2000, 0]);
+  const whole = render.panned(fit, canvas, island, { x: -1e6, y: 1e6 });
+  assert.deepEqual([whole.x_px, whole.y_px], [1000, 500]); // it is all visible
+  const far = render.panned({ ...fit, zoom: 2 }, canvas, island, { x: -1e6, y: 1e6 });
+  assert.deepEqual([far.x_px, far.y_px], [2000 + 7 - 250, 150 - 7]); // the walls and the margin are 7 px at this zoom
 });
 
 test("the minimap appears only while a part is out of sight", () => {

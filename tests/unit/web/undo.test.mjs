@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const { UndoHistory, place, Refusal } = await bundle("world/undo", "world/placing", "world/server");
+const { UndoHistory, Placing, place, Refusal } = await bundle("world/undo", "world/placing", "world/server");
 
 /** A step that writes what it does into `log`. */
 function step(name, log, members = {}) {
@@ -83,4 +83,39 @@ test("undo removes what is left of what was placed, and redo places it again", a
   await place(world, {});
   world.snapshot.generation = 4; // all that was placed has ended
   assert.equal(world.undo.next_undo, "");
+});
+
+test("several requests are one change, and redo places what has room", async () => {
+  const sent = [];
+  let next = 50, full = false;
+  const answers = {
+    place: () => {
+      if (full && next > 51) {
+        throw new Refusal("occupied", "CODE_INVALID_ARGUMENT", "REASON_FIELD_INVALID", []);
+      }
+      return { generation: 3, organisms: [next++] };
+    },
+    remove: () => ({}),
+  };
+  const server = { request: async (kind, fields) => (sent.push(kind), answers[kind](fields)) };
+  const world = { server, shown: "a", island: 0, info: { run_id: "r" }, snapshot: { generation: 3 },
+                  undo: new UndoHistory(() => undefined) };
+  const placing = new Placing(world);
+  placing.end(); // nothing was placed
+  assert.equal(world.undo.next_undo, "");
+  for (let i = 0; i < 3; ++i) {
+    await placing.place({ organisms: [{ genes: [i] }] });
+  }
+  placing.end();
+  assert.equal(await world.undo.undo(), "Undone: placed 3 organisms.");
+  assert.equal(world.undo.next_undo, "");
+  assert.deepEqual(sent.slice(3), ["remove", "remove", "remove"]);
+  next = 50;
+  full = true;
+  await world.undo.redo();
+  sent.length = 0;
+  await world.undo.undo();
+  assert.deepEqual(sent, ["remove", "remove"]);
+  await assert.rejects(world.undo.redo(), /occupied/);
+  assert.equal(world.undo.next_redo, "placed 3 organisms");
 });

@@ -14,7 +14,7 @@ import {link_of} from "../world/link";
 import {unused_name} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
 import {Help, type KeyTarget, listen_to_keys} from "./keys";
-import {Banners, Notices} from "../widgets/notices";
+import {Banners, Notices, type Notify} from "../widgets/notices";
 import type {PaneArea} from "./pane_area";
 import {PaneAreas} from "./pane_areas";
 import type {Server} from "../world/server";
@@ -88,6 +88,7 @@ export class App implements KeyTarget {
   /** Shows the present state. */
   refresh(): void {
     const server = this.server, names = server.world_names, {areas} = this;
+    this.#notices.refresh();
     this.#banners.set(banners_of(server, this.#tokens, this.#link, () => this.refresh()));
     const first = names.includes(first_world) ? first_world : names[0];
     if (server.worlds_known && !areas[0]!.world.name && first !== undefined) {
@@ -128,22 +129,24 @@ export class App implements KeyTarget {
     }
   };
 
-  place_by_clicks = (model: PlacedModel): boolean => {
-    const problem = this.panes.focused.pane.tool.place_copies_of(model);
+  place_by_clicks = (model: PlacedModel): (() => boolean)|null => {
+    const {tool} = this.panes.focused.pane, problem = tool.place_copies_of(model);
     if (problem) {
-      this.notify(problem);
+      this.notify(problem, () => tool.problem("organism", model) === problem);
+      return null;
     }
-    return problem === "";
+    return () => this.panes.focused.pane.tool === tool && tool.tool === "organism" && tool.model === model;
   };
 
-  notify = (text: string): void => this.#notices.show(text);
+  notify: Notify = (text, holds) => this.#notices.show(text, holds);
 
   attempt = async(what: () => Promise<unknown>): Promise<boolean> => {
     try {
       await what();
       return true;
     } catch (error) {
-      this.notify(error instanceof Error ? error.message : String(error));
+      const holds = (): boolean => this.server.state.phase !== "open"; // the request failed for that reason
+      this.notify(error instanceof Error ? error.message : String(error), holds() ? holds : undefined);
       return false;
     }
   };
@@ -220,6 +223,7 @@ export class App implements KeyTarget {
     if (this.column as Column | undefined) { // the first pane is there before the column
       this.column.refresh();
       this.#curve.update(this.world());
+      this.#notices.refresh();
       document.title = app_texts.title(this.world().name);
     }
   }

@@ -225,9 +225,12 @@ async function command(app: KeyTarget, kind: RequestKind, act: () => Promise<voi
     return;
   }
   if (why) {
-    app.notify(why);
+    app.notify(why, () => app.server.why_not(kind, world.shown) === why);
   } else if (world.control.is_over && kind !== "set_speed") {
-    app.notify(world.is_replay ? key_texts.end_of_replay : key_texts.run_has_ended);
+    const {is_replay} = world;
+    app.notify(
+      is_replay ? key_texts.end_of_replay : key_texts.run_has_ended,
+      () => world.control.is_over && world.is_replay === is_replay);
   } else {
     await act();
   }
@@ -248,7 +251,7 @@ function next_world(app: KeyTarget): void {
 async function move_generation(app: KeyTarget, by: number): Promise<void> {
   const world = app.world();
   if (!world.is_replay) {
-    app.notify(key_texts.is_live);
+    app.notify(key_texts.is_live, () => !world.is_replay);
     return;
   }
   await world.past.move_generations(by);
@@ -262,7 +265,7 @@ function next_colouring(app: KeyTarget): void {
   const world = app.world(), all = ["", "health", "lineage", ...world.gene_names.slice(0, 6)];
   const next = all[(all.indexOf(world.look.colour_by) + 1) % all.length]!;
   world.set_look({colour_by: next});
-  app.notify(key_texts.colour(next));
+  app.notify(key_texts.colour(next), () => world.look.colour_by === next);
 }
 
 function escape(app: KeyTarget): void {

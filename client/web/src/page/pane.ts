@@ -7,6 +7,7 @@ import type {Point, Size} from "../render/camera";
 import {pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import type {Notify} from "../widgets/notices";
 import type {ViewedWorld} from "../world/world";
 import {observe_size} from "./canvas_size";
 import {Gestures, type GestureTarget} from "./gestures";
@@ -26,7 +27,7 @@ export interface WorkerLink {
 export interface PaneOptions {
   world: ViewedWorld;
   worker: WorkerLink;
-  notify(text: string): void;
+  notify: Notify;
   /** Called when the user presses or focuses the pane. */
   on_focus?(): void;
   /** Called when the user has selected an organism in the pane. */
@@ -112,6 +113,7 @@ export class Pane {
     if (snapshot !== null) {
       this.#take_size_of_island(snapshot.width_px, snapshot.height_px);
     }
+    this.view.follow_selection();
     const alive = snapshot === null ?
       "" :
       pane_texts.alive(snapshot.generation, snapshot.live?.alive_count ?? snapshot.counts.organisms);
@@ -228,7 +230,8 @@ export class Pane {
     } else if (picked.x_px >= 0) { // it is on the island
       const problem = await this.tool.use(picked);
       if (problem !== "") {
-        this.#options.notify(problem);
+        const holds = (): boolean => this.tool.problem() === problem;
+        this.#options.notify(problem, holds() ? holds : undefined); // otherwise the server has refused it
       }
     }
   }

@@ -5,6 +5,7 @@ import {place_and_speed_text, statistics_texts} from "../texts/snapshot";
 import {state_word} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text, svg} from "../widgets/dom";
+import type {Notify} from "../widgets/notices";
 import type {ViewedWorld} from "../world/world";
 import {Pane, type PaneOptions} from "./pane";
 import {Timeline, type TimelineContext} from "./timeline";
@@ -66,10 +67,10 @@ export class PaneArea {
   }
 
   /** Shows all islands as tiles, or only the chosen one. */
-  toggle_tiles(notify: (text: string) => void): void {
+  toggle_tiles(notify: Notify): void {
     const problem = this.pane.tiles.toggle();
     if (problem !== "") {
-      notify(problem);
+      notify(problem, () => this.pane.tiles.problem === problem);
     }
     this.#refresh();
   }

@@ -66,7 +66,8 @@ export class PaneAreas {
     } else if (next !== undefined && next !== name) {
       this.show_beside(next);
     } else if (shown.past.problem) {
-      this.#options.notify(shown.past.problem);
+      const {problem} = shown.past;
+      this.#options.notify(problem, () => shown.past.problem === problem);
     } else {
       const generation = shown.snapshot?.generation ?? 1, past = this.show_beside(name, island);
       void this.#options.attempt(() => past.past.show(generation));
@@ -76,12 +77,14 @@ export class PaneAreas {
   /** Makes both views move together, or each by itself. */
   toggle_link(): void {
     if (!this.other) {
-      this.#options.notify(link_texts.one_world);
+      this.#options.notify(link_texts.one_world, () => this.other === null);
       return;
     }
     this.#linked.toggle(this.focused.pane.view);
     this.#refresh_heads();
-    this.#options.notify(this.#linked.is_on ? link_texts.linked : link_texts.unlinked);
+    const {is_on} = this.#linked;
+    this.#options.notify(
+      is_on ? link_texts.linked : link_texts.unlinked, () => this.other !== null && this.#linked.is_on === is_on);
   }
 
   close(area: PaneArea): void {

@@ -1,6 +1,7 @@
 // PaneView: which part of its island a pane shows. It posts the camera to the worker, which draws.
 import type {Camera} from "../core/messages";
 import {
+  clamped,
   contains,
   fitted,
   is_whole_island_visible,
@@ -9,9 +10,12 @@ import {
   type Point,
   same_part,
   type Size,
+  zoom_to_fit,
   zoomed
 } from "../render/camera";
 import type {ViewedWorld} from "../world/world";
+
+const follow_zoom = 3; // the least zoom at which an organism is followed; 1 shows the whole island
 
 export class PaneView {
   /** What is shown; null: the whole island. */
@@ -21,6 +25,8 @@ export class PaneView {
   /** All islands are shown, each as a whole. */
   shows_all = false;
 
+  /** What was shown before an organism was followed; null: none is followed. */
+  #before_follow: {camera: Camera | null}|null = null;
   readonly #world: ViewedWorld;
   readonly #on_move: (view: PaneView) => void;
 
@@ -32,7 +38,8 @@ export class PaneView {
 
   /** The camera that is shown; null before the first snapshot. */
   shown(): Camera|null {
-    return this.camera ?? (this.island === null ? null : fitted(this.size, this.island));
+    const {camera, size, island} = this;
+    return island === null ? null : camera === null ? fitted(size, island) : clamped(camera, size, island);
   }
 
   /** Shows this part without moving a linked view. */
@@ -44,18 +51,16 @@ export class PaneView {
   /** Shows the whole island. */
   fit(): void {
     if (!this.shows_all) {
-      this.#world.selection.set_follow(false);
+      this.#leave_followed();
       this.#move(null);
     }
   }
 
-  /** Moves the drawn island by this many pixels. A view that the user moves follows no organism. */
+  /** Moves the drawn island by this many pixels. */
   pan(by: Point): void {
     const shown = this.shown();
     if (shown !== null && !this.shows_all && (by.x !== 0 || by.y !== 0)) {
-      if (this.#world.selection.follow) {
-        this.#world.selection.set_follow(false);
-      }
+      this.#leave_followed();
       this.#move(panned(shown, this.size, this.island!, by));
     }
   }
@@ -77,7 +82,7 @@ export class PaneView {
     const shown = this.shown();
     if (shown !== null) {
       const {screen, zoom} = minimap_place(this.size, this.island!);
-      this.#world.selection.set_follow(false);
+      this.#leave_followed();
       const there = {...shown, x_px: (at.x - screen.left) / zoom, y_px: (at.y - screen.top) / zoom};
       this.#move(panned(there, this.size, this.island!, {x: 0, y: 0}));
     }
@@ -88,6 +93,21 @@ export class PaneView {
     return shown !== null && !this.shows_all && this.#world.look.minimap &&
       !is_whole_island_visible(shown, this.size, this.island!) &&
       contains(minimap_place(this.size, this.island!).screen, at);
+  }
+
+  /** Call it after the selection has changed. A view that begins to follow an organism shows it near enough to see it
+   *  move. When the user ends that, the view shows what it showed before; when the organism is gone, the whole island.
+   */
+  follow_selection(): void {
+    const {follow, at, is_lost} = this.#world.selection, before = this.#before_follow, shown = this.shown();
+    if (follow && before === null && shown !== null) {
+      this.#before_follow = {camera: this.camera};
+      const zoom = Math.max(shown.zoom, follow_zoom * zoom_to_fit(this.size, this.island!));
+      this.#move(clamped({...shown, ...(at && {x_px: at.x_px, y_px: at.y_px}), zoom}, this.size, this.island!));
+    } else if (!follow && before !== null) {
+      this.#before_follow = null;
+      this.#move(is_lost ? null : before.camera);
+    }
   }
 
   /** The worker has moved the view with a followed organism. */
@@ -102,12 +122,20 @@ export class PaneView {
     if (this.island === null || other.island === null) {
       return;
     }
-    const wanted = other.camera && same_part(other.camera, other.island, this.island, this.size);
+    const wanted = other.camera && same_part(other.shown()!, other.island, this.island, this.size);
     const own = this.shown();
     if (!this.#world.selection.follow) {
       this.set(wanted);
     } else if (own !== null) {
       this.set({...own, zoom: (wanted ?? fitted(this.size, this.island)).zoom});
+    }
+  }
+
+  /** A view that the user moves follows no organism, and stays where the user leaves it. */
+  #leave_followed(): void {
+    this.#before_follow = null;
+    if (this.#world.selection.follow) {
+      this.#world.selection.set_follow(false);
     }
   }
 

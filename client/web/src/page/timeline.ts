@@ -6,6 +6,7 @@
 import {timeline_buttons as texts, timeline_texts} from "../texts/timeline";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import type {Notify} from "../widgets/notices";
 import type {Moment} from "../world/time_scale";
 import type {ViewedWorld} from "../world/world";
 import {GenerationField} from "./generation_field";
@@ -13,7 +14,7 @@ import {Seeker} from "./seeker";
 import {TimeSlider} from "./time_slider";
 
 export interface TimelineContext {
-  notify(text: string): void;
+  notify: Notify;
   attempt(what: () => Promise<unknown>): Promise<boolean>;
   copy_link(world: ViewedWorld): void;
 }

@@ -7,9 +7,8 @@ import {h} from "../widgets/dom";
 import {row} from "../widgets/form";
 import {gene_problem} from "../world/names";
 import type {PanelContext} from "../world/panel_context";
-import {place} from "../world/placing";
+import {Placing} from "../world/placing";
 import {Refusal} from "../world/server";
-import type {ViewedWorld} from "../world/world";
 
 import type {ChosenOrganism} from "./freezer_choice";
 
@@ -65,8 +64,9 @@ export class FreezerPlacing {
       return;
     }
     const {organism: {name, genes}, gene_names} = model;
-    if (this.#context.place_by_clicks({name: texts.a_copy_of(name), genes: [...genes], gene_names})) {
-      this.#context.notify(texts.placing(name));
+    const is_chosen = this.#context.place_by_clicks({name: texts.a_copy_of(name), genes: [...genes], gene_names});
+    if (is_chosen !== null) {
+      this.#context.notify(texts.placing(name), is_chosen);
     }
   }
 
@@ -91,23 +91,27 @@ export class FreezerPlacing {
     if (!snapshot) {
       return;
     }
-    for (let placed = 0; placed < wanted; ++placed) {
-      const size = {x: snapshot.width_px, y: snapshot.height_px};
-      if (!await this.#place_copy(world, [...genes], size)) {
-        throw new Error(texts.no_room(placed, wanted));
+    const placing = new Placing(world), size = {x: snapshot.width_px, y: snapshot.height_px};
+    try {
+      for (let placed = 0; placed < wanted; ++placed) {
+        if (!await this.#place_copy(placing, [...genes], size)) {
+          throw new Error(texts.no_room(placed, wanted));
+        }
       }
+    } finally {
+      placing.end(); // all copies are one change
     }
     this.#context.notify(texts.scattered(name, wanted, world.name, island));
   }
 
   /** Returns whether a free place was found. */
-  async #place_copy(world: ViewedWorld, genes: number[], size: {x: number; y: number}): Promise<boolean> {
+  async #place_copy(placing: Placing, genes: number[], size: {x: number; y: number}): Promise<boolean> {
     const random = (length: number): number =>
       length > 2 * margin_px ? margin_px + Math.random() * (length - 2 * margin_px) : length / 2;
     for (let tries = 0; tries < tries_max; ++tries) {
       try {
         const organisms = [{x_px: random(size.x), y_px: random(size.y), genes}];
-        await place(world, {organisms});
+        await placing.place({organisms});
         return true;
       } catch (error) {
         const is_occupied = error instanceof Refusal && error.violations.some(({field}) => place_field.test(field));

@@ -111,7 +111,7 @@ export class ParametersPanel implements Panel {
     }
     const wrong = this.#list.wrong_row(), when = this.#when.chosen();
     if (wrong !== undefined) {
-      this.#context.notify(texts.typing_is_wrong);
+      this.#context.notify(texts.typing_is_wrong, () => this.#list.wrong_row() !== undefined);
       wrong.focus();
     } else if (typeof when === "string") {
       this.edits.problem = when;

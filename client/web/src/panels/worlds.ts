@@ -120,7 +120,9 @@ export class WorldsPanel implements Panel {
   #ask_fork(): void {
     const world = this.#context.world(), why = this.#context.server.why_not("fork_world");
     if (why || !world.snapshot) {
-      this.#context.notify(why || common_texts.no_world);
+      this.#context.notify(
+        why || common_texts.no_world,
+        () => why === "" ? !this.#context.world().snapshot : this.#context.server.why_not("fork_world") === why);
       return;
     }
     set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.feed.tick));

@@ -61,12 +61,19 @@ export function fitted(canvas: Size, island: Size, frame = pane_frame): Camera {
   return {x_px: island.width / 2, y_px: island.height / 2, zoom: zoom_to_fit(canvas, island, frame)};
 }
 
-/** Keeps the middle of the canvas on the island, and the zoom in its range. */
+/** Keeps the zoom in its range, and the visible part within the island, its walls and their margin. Where the island is
+ *  smaller than the canvas, it is in the middle. */
 export function clamped(camera: Camera, canvas: Size, island: Size): Camera {
+  const zoom = clamp(camera.zoom, zoom_min(canvas, island), zoom_max);
+  const around = (pane_frame.walls + pane_frame.margin) / zoom;
+  const along = (middle: number, visible: number, size: number): number => {
+    const least = visible / zoom / 2 - around; // of the middle
+    return least >= size / 2 ? size / 2 : clamp(middle, least, size - least);
+  };
   return {
-    x_px: clamp(camera.x_px, 0, island.width),
-    y_px: clamp(camera.y_px, 0, island.height),
-    zoom: clamp(camera.zoom, zoom_min(canvas, island), zoom_max),
+    x_px: along(camera.x_px, canvas.width, island.width),
+    y_px: along(camera.y_px, canvas.height, island.height),
+    zoom,
   };
 }
 
@@ -90,7 +97,7 @@ export function panned(camera: Camera, canvas: Size, island: Size, by: Point): C
     {...camera, x_px: camera.x_px - by.x / camera.zoom, y_px: camera.y_px - by.y / camera.zoom}, canvas, island);
 }
 
-/** Multiplies the zoom. The world point under `screen` does not move, unless the middle would leave the island. */
+/** Multiplies the zoom. The world point under `screen` does not move, unless the view would leave the island. */
 export function zoomed(camera: Camera, canvas: Size, island: Size, screen: Point, factor: number): Camera {
   const zoom = clamp(camera.zoom * factor, zoom_min(canvas, island), zoom_max);
   const held = to_world(camera, canvas, screen);

@@ -1,5 +1,6 @@
 // controls: widgets that several parts of the page use.
 import {h, set_text} from "./dom";
+import type {Notify} from "./notices";
 
 /** Enables a button, or makes it explain why it cannot act: it stays reachable by keyboard, and guard() shows the
  *  reason. */
@@ -26,14 +27,16 @@ export function set_value(control: HTMLInputElement|HTMLSelectElement, value: st
 
 /** A button that calls `act`, or shows its reason by `notify` while set_allowed() has disabled it. */
 export function guarded_button(
-  label: string, notify: (text: string) => void, act: () => void, classes = "button"): HTMLButtonElement {
+  label: string, notify: Notify, act: () => void, classes = "button"): HTMLButtonElement {
+  const is_disabled = (): boolean => button.getAttribute("aria-disabled") === "true";
   const button =
     h("button", {
       type: "button",
       class: classes,
       onclick: () => {
-        if (button.getAttribute("aria-disabled") === "true") {
-          notify(button.title);
+        if (is_disabled()) {
+          const why = button.title;
+          notify(why, () => button.isConnected && is_disabled() && button.title === why);
         } else {
           act();
         }

@@ -6,11 +6,27 @@ import {h, set_text} from "./dom";
 
 const shown_ms = 6000, notices_max = 3;
 
+/** Shows a message.
+ *
+ *  holds  whether what the message states is still true; absent: the message reports something that has happened */
+export type Notify = (text: string, holds?: () => boolean) => void;
+
 export class Notices {
   readonly element = h("div", {class: "notices", role: "status", "aria-live": "polite"});
+  readonly #conditions = new Map<Element, () => boolean>(); // by notice
 
-  /** Shows a message. The same message is not shown twice at a time. */
-  show(text: string): void {
+  /** Removes the messages about what is not true any more. */
+  refresh(): void {
+    for (const [notice, holds] of this.#conditions) {
+      if (!notice.isConnected || !holds()) {
+        notice.remove();
+        this.#conditions.delete(notice);
+      }
+    }
+  }
+
+  /** Shows a message; see Notify. The same message is not shown twice at a time. */
+  show(text: string, holds?: () => boolean): void {
     for (const notice of [...this.element.children]) {
       if (notice.firstChild?.textContent === text) {
         notice.remove();
@@ -26,6 +42,9 @@ export class Notices {
       },
         "✕"));
     this.element.append(notice);
+    if (holds !== undefined) {
+      this.#conditions.set(notice, holds);
+    }
     while (this.element.children.length > notices_max) {
       this.element.firstElementChild!.remove();
     }

@@ -19,11 +19,12 @@ export interface PanelContext {
   fork(name?: string): Promise<void>;
   /** Opens a panel by its name, with a subject: open("glass box", {generation: 3, organism: 7}). */
   open(panel: string, subject?: {[key: string]: unknown}): void;
-  /** Lets each click in the focused island place a copy of the model. Returns whether it can; if not, a message says
-   *  why. */
-  place_by_clicks(model: PlacedModel): boolean;
-  /** Shows a short message at the bottom, read by screen readers. */
-  notify(text: string): void;
+  /** Lets each click in the focused island place a copy of the model. Returns whether it still does, as a function; null
+   *  if it cannot, and a message says why. */
+  place_by_clicks(model: PlacedModel): (() => boolean)|null;
+  /** Shows a short message at the bottom, read by screen readers. It disappears after some seconds, and when `holds`
+   *  returns false: what it states is not true any more. */
+  notify(text: string, holds?: () => boolean): void;
   /** Runs a request, and shows the sentence of a refusal. Returns whether it succeeded. */
   attempt(what: () => Promise<unknown>): Promise<boolean>;
 }

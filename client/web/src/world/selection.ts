@@ -14,6 +14,7 @@ type Place = {
 export class Selection {
   id: number|null = null; // of the selected organism
   follow = false; // whether the camera follows it
+  is_lost = false; // the organism that the camera followed is dead, or is not in what is shown now
   at: Place|null = null; // in the drawn snapshot
   info: OrganismInfo|null = null; // polled 4 times a second
   #pending = false;
@@ -39,6 +40,7 @@ export class Selection {
     this.info = null;
     this.#info_tick = -1;
     this.follow = organism !== null && this.follow;
+    this.is_lost = false;
     this.#remember();
     this.post();
     this.#on_change();
@@ -47,6 +49,7 @@ export class Selection {
 
   set_follow(follow: boolean): void {
     this.follow = follow && this.id !== null;
+    this.is_lost = false;
     this.#remember();
     this.post();
     this.#changes.notify();
@@ -55,7 +58,7 @@ export class Selection {
   /** Ends the selection, because another island or another run is shown. */
   forget(): void {
     this.id = this.at = this.info = null;
-    this.follow = false;
+    this.#lose();
   }
 
   post(): void {
@@ -71,6 +74,7 @@ export class Selection {
     const ends = this.id !== null && before !== null && before.generation !== next.generation;
     if (again ? this.id === null : ends) {
       this.id = again ? remembered.id : null;
+      this.#lose();
       this.follow = again && remembered.follow;
       this.at = this.info = null;
       this.#info_tick = -1;
@@ -84,6 +88,11 @@ export class Selection {
       this.#remember();
     }
     this.at = this.id === null ? null : at;
+  }
+
+  #lose(): void {
+    this.is_lost ||= this.follow;
+    this.follow = false;
   }
 
   #remember(): void {
@@ -106,12 +115,19 @@ export class Selection {
         (info) => {
           if (is_selected() && island === this.#feed.island) {
             this.info = info;
+            if (this.follow && info.alive !== true) {
+              this.#lose();
+              this.#remember();
+              this.post();
+            }
             this.#changes.notify();
           }
         },
         (error: Refusal) => {
           if (error.reason === "REASON_ORGANISM_NOT_FOUND" && is_selected()) {
+            const {follow} = this;
             this.select(null);
+            this.is_lost = follow;
           }
         })
       .finally(() => {

@@ -12,7 +12,7 @@ export function why_not_undo(context: PanelContext): string {
 export async function undo(context: PanelContext, verb: UndoVerb): Promise<void> {
   const why = why_not_undo(context);
   if (why !== "") {
-    context.notify(why);
+    context.notify(why, () => why_not_undo(context) === why);
     return;
   }
   await context.attempt(async () => context.notify(await context.world().undo[verb]()));
