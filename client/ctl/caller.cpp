@@ -214,8 +214,7 @@ std::string durability_warning(const v1::Welcome& welcome) {
 
 std::string speed_of(const v1::WorldInfo& world) {
     const v1::Speed& speed = world.speed();
-    return (speed.has_real_time_factor() ? number_text(speed.real_time_factor(), text::Exponent::IfLong) + "x"
-                                         : "max") +
+    return (speed.has_real_time_factor() ? speed_text(speed.real_time_factor()) : "max") +
            (world.slowed() ? " (slower)" : "");
 }
 

@@ -94,7 +94,7 @@ std::string state_of(const v1::WorldInfo& world);
 std::string colored_state_of(const v1::WorldInfo& world);
 /// Returns a warning if acknowledged commands may be lost, for example when the machine fails; empty otherwise.
 std::string durability_warning(const v1::Welcome& welcome);
-/// Returns the requested speed, and whether the world is slower than requested: "2x", "max", "100x (slower)".
+/// Returns the requested speed, and whether the world is slower than requested: "2×", "max", "100× (slower)".
 std::string speed_of(const v1::WorldInfo& world);
 /// Describes a world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);

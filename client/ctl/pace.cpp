@@ -26,7 +26,7 @@ std::optional<double> real_s(const v1::WorldInfo& world, const Durations& durati
 std::string plan_text(const v1::WorldInfo& world, const Durations& durations,
                       std::optional<std::uint64_t> generations) {
     const bool has_speed = world.speed().has_real_time_factor();
-    std::string text = has_speed ? "at " + number_text(world.speed().real_time_factor()) + "x, a generation of " +
+    std::string text = has_speed ? "at " + speed_text(world.speed().real_time_factor()) + ", a generation of " +
                                        duration(durations.generation_s) + " takes " +
                                        duration(durations.generation_s / world.speed().real_time_factor())
                                  : "at max, a generation of " + duration(durations.generation_s) +

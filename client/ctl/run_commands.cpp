@@ -438,16 +438,21 @@ v1::Speed parse_speed(std::string_view word) {
         speed.set_max(true);
         return speed;
     }
-    std::string_view number = word;
-    if (number.ends_with('x')) {
-        number.remove_suffix(1);
+    std::string_view number = word; // as speed_text() prints it: "2×", "1/8×"
+    for (const std::string_view sign : {"x", "×"}) {
+        if (number.ends_with(sign)) {
+            number.remove_suffix(sign.size());
+        }
     }
+    const bool is_fraction = number.starts_with("1/");
+    number.remove_prefix(is_fraction ? 2 : 0);
     double factor = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), factor);
     if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(factor)) {
         throw Stop{ExitCode::Usage, "SPEED: got " + std::string{word} +
                                         ", allowed max, or 0.001 to 10000, such as 2 for twice real time"};
     }
+    factor = is_fraction ? 1 / factor : factor; // the server refuses 1/0
     speed.set_real_time_factor(factor);
     return speed;
 }
@@ -569,7 +574,7 @@ void add_run_commands(command_line::Command& app, const Common& common) {
     auto& word = speed_command.keep(std::string{});
     speed_command.add_option("SPEED", &word, "Simulated seconds per second of real time, 0.001 to 10000, or max")
         .required();
-    speed_command.footer("Examples:\n  evoctl speed 2\n  evoctl speed max");
+    speed_command.footer("Examples:\n  evoctl speed 2\n  evoctl speed 1/4\n  evoctl speed max");
     speed_command.action([&] { set_speed(common, word); });
 }
 

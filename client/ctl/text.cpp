@@ -172,4 +172,10 @@ std::string clip_page(std::string_view utf8, std::size_t width, std::size_t line
     return clip_lines(utf8.substr(0, end), width);
 }
 
+std::string speed_text(double factor) {
+    const double inverse = factor > 0 ? 1 / factor : 0;
+    const bool is_fraction = factor < 1 && inverse > 0 && inverse == std::floor(inverse);
+    return (is_fraction ? "1/" + fixed(inverse, 0) : number_text(factor, text::Exponent::IfLong)) + "×";
+}
+
 } // namespace evod::ctl

@@ -67,4 +67,7 @@ std::string clip_lines(std::string_view utf8, std::size_t width);
 /// as clip_lines() does. The last line has no line break, so that the cursor stays at its end.
 std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines);
 
+/// Returns a factor of real time as the page and evoview show it: "2×", "1/8×".
+std::string speed_text(double factor);
+
 } // namespace evod::ctl

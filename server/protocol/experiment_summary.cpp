@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -81,23 +82,109 @@ bool has_gene_costs(const Parameters& parameters) {
     });
 }
 
+/// "8 organisms", "1 organism".
+std::string counted(std::uint32_t count, const std::string& one, const std::string& many) {
+    return shown(count) + " " + (count == 1 ? one : many);
+}
+
+/// What the organisms do: "50 organisms seek food (+25 health) and avoid poison (−40)", without the full stop.
+std::string about_meals(const Parameters& p) {
+    const bool has_networks = p.controller == evolution::Controller::Network;
+    std::string text = counted(p.population_size, "organism", "organisms") +
+                       (has_networks ? ", each steered by an evolving neural network, eat" : " seek") + " food (+" +
+                       shown(p.food_health) + " health)";
+    if (p.poison_count != 0) {
+        const bool always = p.flee_rule == parameters::FleeRule::Always;
+        text += std::string{has_networks ? " and poison"
+                            : always     ? " and always flee from poison"
+                                         : " and avoid poison"} +
+                " (−" + shown(p.poison_harm) + ")";
+    }
+    if (p.obstacle_count > 0 || p.crate_count > 0) {
+        text += " among ";
+        text += p.obstacle_count > 0 ? counted(p.obstacle_count, "obstacle", "obstacles") : "";
+        text += p.obstacle_count > 0 && p.crate_count > 0 ? " and " : "";
+        text += p.crate_count > 0 ? counted(p.crate_count, "crate", "crates") : "";
+    }
+    return text;
+}
+
+/// The life of organisms with bodies.
+std::string about_life(const Parameters& p) {
+    const bool has_networks = p.controller == evolution::Controller::Network, has_costs = has_gene_costs(p);
+    std::string text = about_meals(p) + (has_networks ? "; a line shows where each heads. " : ". ");
+    if (!has_networks && p.steering_lookahead_s == 0) {
+        text += "They orbit their food, because they do not steer ahead. ";
+    }
+    return text + (p.health_loss_per_s == 0 && !has_costs
+                       ? "They lose no health over time. "
+                       : "Each loses " + shown(p.health_loss_per_s) + " health per second" +
+                             (has_costs ? ", more or less with its genes," : "") + " and dies at 0. ");
+}
+
+/// What islands exchange; empty for one island.
+std::string about_migration(const Parameters& p) {
+    if (p.island_count == 1) {
+        return "";
+    }
+    if (p.migration == evolution::Topology::None) {
+        return "Nothing migrates between the islands. ";
+    }
+    const std::string which = p.emigrants == evolution::Emigrants::Best ? "best" : "random";
+    const std::string what = p.migrant_count != 1 ? "copies of " + shown(p.migrant_count) + " " + which + " organisms"
+                             : which == "best"    ? "a copy of its best organism"
+                                                  : "a copy of a random organism";
+    return (p.migration_epoch == 1 ? std::string{"After each generation"}
+                                   : "Every " + shown(p.migration_epoch) + " generations") +
+           ", each island sends " + what +
+           (p.migration == evolution::Topology::Ring             ? " to the next island. "
+            : p.migration == evolution::Topology::FullyConnected ? " to every other island. "
+                                                                 : " to a random other island. ");
+}
+
+/// How a generation replaces the previous one, where that differs from the default, and when the run ends.
+std::string about_generations(const Parameters& p) {
+    using evolution::PopulationModel;
+    std::string text;
+    if (p.population_model == PopulationModel::Generational) {
+        text += " Each generation replaces all organisms" +
+                (p.elite_count == 0 ? "" : " except the " + shown(p.elite_count) + " best") + ".";
+    } else if (p.population_model == PopulationModel::SteadyState) {
+        text += " Each generation replaces only the " + shown(p.replaced_count) + " worst organisms.";
+    } else if (p.mutate_survivors) {
+        text += " Survivors mutate, too.";
+    }
+    if (p.generation_limit != 0) {
+        text += " The run ends after generation " + shown(p.generation_limit) + ".";
+    }
+    return text;
+}
+
 } // namespace
 
 std::string experiment_summary(const Parameters& p) {
-    const bool has_networks = choice_of("controller", p) == "network", has_costs = has_gene_costs(p);
-    std::string summary =
-        shown(static_cast<double>(p.population_size)) +
-        (has_networks ? " organisms, each steered by an evolving neural network, eat" : " organisms seek") +
-        " food (+" + shown(p.food_health) + " health)";
-    if (p.poison_count != 0) {
-        summary += (has_networks ? " and poison (−" : " and avoid poison (−") + shown(p.poison_harm) + ")";
+    const bool has_bodies = parameters::has_bodies(p);
+    return (p.island_count == 1 ? "" : "On each of " + shown(p.island_count) + " islands: ") +
+           (has_bodies ? about_life(p)
+                       : counted(p.population_size, "organism has no body", "organisms have no bodies") +
+                             "; only their genes count. ") +
+           (p.free_genes == 0 ? ""
+                              : "Each has " + counted(p.free_genes, "free gene", "free genes") +
+                                    (has_bodies ? ", which its body does not use. " : ". ")) +
+           about_migration(p) + "Fitness " + about_fitness(p) + ". " + about_selection(p, choice_of("selection", p)) +
+           about_generations(p);
+}
+
+std::string schedule_summary(const parameters::Schedule& schedule, std::uint64_t after_generation) {
+    const auto& changes = schedule.changes();
+    std::string text;
+    for (auto change = changes.upper_bound(after_generation); change != changes.end(); ++change) {
+        text += (text.empty()                         ? " Parameters change in generation "
+                 : std::next(change) == changes.end() ? " and "
+                                                      : ", ") +
+                text::with_separators(change->first);
     }
-    summary += has_networks ? "; a line shows where each heads. " : ". ";
-    summary += p.health_loss_per_s == 0 && !has_costs
-                   ? "They lose no health over time."
-                   : "Each loses " + shown(p.health_loss_per_s) + " health per second" +
-                         (has_costs ? ", more or less with its genes," : "") + " and dies at 0.";
-    return summary + " Fitness " + about_fitness(p) + ". " + about_selection(p, choice_of("selection", p));
+    return text.empty() ? text : text + ".";
 }
 
 } // namespace evod::protocol

@@ -3,6 +3,7 @@
 #include "proto/codec/little_endian.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/commands.h"
+#include "server/protocol/experiment_summary.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
@@ -89,6 +90,7 @@ base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& labo
         *set.add_planned() = to_proto(change);
     }
     *set.mutable_schedule() = to_proto(world.schedule(), world.moment().generation);
+    set.set_summary(set.summary() + schedule_summary(world.schedule(), world.moment().generation));
     return set;
 }
 

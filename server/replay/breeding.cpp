@@ -23,10 +23,30 @@ Refusal not_found_refusal(const char* field, std::uint64_t first, std::uint64_t 
             .reason = base::Reason::MomentNotFound};
 }
 
+/// Refuses a generation that bred in the run of which this one is a fork. A violation names the ids of both runs, so that
+/// a client can find the world that has the origin.
+Refusal bred_in_origin(const run_file::RunIdentity& identity, std::uint64_t generation, RefusalCode code,
+                       base::Reason reason) {
+    const std::string origin = to_text(*identity.forked_from);
+    return {.code = code,
+            .message = "generation " + std::to_string(generation) +
+                       " bred before this run began, in the run of which it is a fork: " + origin,
+            .violations = {{"world", origin, to_text(identity.run_id)}},
+            .reason = reason};
+}
+
 /// Returns the number of the parents' generation.
 Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreeding& wanted) {
-    const std::uint64_t first = file.identity().first_generation, last = file.generations().last();
-    if (last <= first) {
+    const run_file::RunIdentity& identity = file.identity();
+    const std::uint64_t first = identity.first_generation, last = file.generations().last();
+    const std::uint64_t of_origin = wanted.generation.value_or(first - 1); // if none has bred here
+    const bool has_bred = last > first;
+    if (identity.forked_from && of_origin > 0 && of_origin < first && (wanted.generation || !has_bred)) {
+        return has_bred
+                   ? bred_in_origin(identity, of_origin, RefusalCode::NotFound, base::Reason::MomentNotFound)
+                   : bred_in_origin(identity, of_origin, RefusalCode::FailedPrecondition, base::Reason::NotBredYet);
+    }
+    if (!has_bred) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message = "no generation of this run has bred yet: the run is in its first generation",
                        .violations = {},

@@ -19,6 +19,7 @@ import unittest
 import waiting
 
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 class WithServer(unittest.TestCase):
@@ -198,7 +199,7 @@ class Commands(WithServer):
         self.evoctl("speed", "1")
         self.evoctl("set", "generation_s=1.5")
         self.evoctl("reset")
-        self.assertEqual(said("run", "2", "--wait")[0], "at 1x, a generation of 1.5 s takes 1.5 s: 2 generations take "
+        self.assertEqual(said("run", "2", "--wait")[0], "at 1×, a generation of 1.5 s takes 1.5 s: 2 generations take "
                                                         "about 3.0 s; "
                                                         "evoctl speed max is faster")
         self.evoctl("speed", "100")
@@ -264,6 +265,35 @@ class Commands(WithServer):
         self.assertIn("WORLD: got nowhere, allowed ", self.evoctl("fork", "nowhere", "--name", "x", status=1))
         self.assertIn("--at-generation: got 9, allowed 1 to 3",
                       self.evoctl("fork", "default", "--at-generation", "9", "--name", "x", status=1))
+
+    def test_speeds_are_spelled_as_in_the_page(self):
+        for factor, text in json.loads((ROOT / "proto/vectors/speeds.json").read_text()):
+            for word in (str(factor), text, text.replace("×", "x")):
+                self.assertIn(f"waiting at {text}, ", self.evoctl("speed", word))
+            self.assertEqual(self.answer("stats")["world"]["speed"], {"real_time_factor": factor})
+
+    def test_summaries_of_experiments_differ(self):
+        expected = {  # what distinguishes each experiment of the repository
+            "annealing": ["Parameters change in generation 20 and 40.", "The run ends after generation 60."],
+            "bench": ["1,000 organisms"],
+            "brains": ["each steered by an evolving neural network", "Only the fittest have offspring."],
+            "classic": ["20 organisms", "always flee from poison", "orbit their food", "Survivors mutate, too."],
+            "default": ["50 organisms seek food (+25 health) and avoid poison (−40)."],
+            "islands": ["On each of 8 islands: 50 organisms", "Every 10 generations, each island sends a copy of its best "
+                        "organism to the next island."],
+            "rooy": ["each steered by an evolving neural network", "They lose no health", "Fitness is the food eaten"],
+            "trade_offs": ["more or less with its genes"],
+        }
+        files = sorted((ROOT / "experiments").glob("*.json"))
+        self.assertEqual([file.stem for file in files], sorted(expected))
+        summaries = {}
+        for file in files:
+            world = "of_" + file.stem
+            self.evoctl("create", world, "--experiment", str(file))
+            summaries[file.stem] = self.answer("--world", world, "get")["summary"]
+            for words in expected[file.stem]:
+                self.assertIn(words, summaries[file.stem], file.stem)
+        self.assertEqual(len(set(summaries.values())), len(summaries), summaries)
 
     def test_a_world_is_named_by_value_or_option(self):
         listing = self.evoctl("--help")

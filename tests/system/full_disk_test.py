@@ -258,7 +258,7 @@ class FullDisk(unittest.TestCase):
         self.assertIn("full", world.storage.reason)
         status = self.status(server)
         self.assertIn(f"worlds wait for the disk, commands are refused: {world.storage.reason}\n", status)
-        self.assertRegex(status, r"default +waits for the disk +1x")
+        self.assertRegex(status, r"default +waits for the disk +1×")
         self.assertEqual(control.call(3, **set_parameter("food_health", 5)).status.code, UNAVAILABLE)
         # Who comes now sees them, and the past.
         newcomer = self.client(server, "newcomer")

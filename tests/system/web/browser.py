@@ -25,7 +25,9 @@ WAIT_S = 300  # for one step of the browser, on a machine that is busy with othe
 
 
 class Browser:
-    def __init__(self, *arguments):
+    """introduces: the page shows its introduction, as to a new visitor."""
+
+    def __init__(self, *arguments, introduces=False):
         options = webdriver.ChromeOptions()
         for argument in ("--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                          "--disable-dev-shm-usage",
@@ -40,6 +42,9 @@ class Browser:
         self.driver.set_page_load_timeout(WAIT_S)
         self.driver.set_script_timeout(WAIT_S)
         self.resize(WIDTH, HEIGHT)
+        if not introduces:
+            self.cdp("Page.addScriptToEvaluateOnNewDocument", source="""try {
+                localStorage.setItem("evod.introduction", "seen"); } catch { /* about:blank has no storage */ }""")
 
     def close(self):
         atexit.unregister(self.close)

@@ -20,12 +20,12 @@ v1::WorldInfo world_at(double factor, double ticks_per_s = 0) {
 
 TEST(Plan, SaysWhatASpeedMeans) {
     EXPECT_EQ(plan_text(world_at(1), durations, 30),
-              "at 1x, a generation of 40.0 s takes 40.0 s: 30 generations take about 20:00 min; evoctl speed max is "
+              "at 1×, a generation of 40.0 s takes 40.0 s: 30 generations take about 20:00 min; evoctl speed max is "
               "faster");
     EXPECT_EQ(plan_text(world_at(20), durations, 1),
-              "at 20x, a generation of 40.0 s takes 2.0 s: 1 generation takes about 2.0 s");
+              "at 20×, a generation of 40.0 s takes 2.0 s: 1 generation takes about 2.0 s");
     EXPECT_EQ(plan_text(world_at(4), durations, std::nullopt),
-              "at 4x, a generation of 40.0 s takes 10.0 s; evoctl speed max is faster");
+              "at 4×, a generation of 40.0 s takes 10.0 s; evoctl speed max is faster");
 }
 
 TEST(Plan, PrefersTheMeasuredSpeed) {

@@ -30,6 +30,13 @@ TEST(Bar, FillsItsShareInEighths) {
     EXPECT_EQ(bar(7, 3), "███");
 }
 
+TEST(SpeedText, IsAFractionBelowRealTime) {
+    EXPECT_EQ(speed_text(1), "1×");
+    EXPECT_EQ(speed_text(2.5), "2.5×");
+    EXPECT_EQ(speed_text(0.125), "1/8×");
+    EXPECT_EQ(speed_text(0.3), "0.3×");
+}
+
 TEST(Visible, RemovesControlCharacters) {
     EXPECT_EQ(visible("a\x1b[2Jb\r\a\x7f\tc\nd"), "a?[2Jb????c\nd");
     EXPECT_EQ(visible("\xc2\x9b"

@@ -74,6 +74,39 @@ TEST(ExperimentSummary, NamesFitnessOfTheGenesAndItsSelection) {
     EXPECT_THAT(text("life", "stochastic_universal"), HasSubstr("(stochastic universal selection)"));
 }
 
+TEST(ExperimentSummary, SaysWhatIslandsExchange) {
+    const auto text = [](std::vector<parameters::Assignment> more) {
+        more.push_back({"island_count", std::uint32_t{3}});
+        return experiment_summary(with(more));
+    };
+    EXPECT_THAT(text({}), AllOf(StartsWith("On each of 3 islands: 50 organisms seek"), HasSubstr("Nothing migrates")));
+    EXPECT_THAT(
+        text({{"migration", std::string{"fully_connected"}}, {"migration_epoch", std::uint32_t{1}}}),
+        HasSubstr("After each generation, each island sends a copy of its best organism to every other island."));
+    EXPECT_THAT(text({{"migration", std::string{"random"}},
+                      {"migrant_count", std::uint32_t{2}},
+                      {"emigrants", std::string{"random"}}}),
+                HasSubstr("Every 10 generations, each island sends copies of 2 random organisms to a random other "));
+}
+
+TEST(ExperimentSummary, SaysHowGenerationsFollowEachOther) {
+    const auto text = [](const char* model) {
+        return experiment_summary(with({{"population_model", std::string{model}}, {"elite_count", std::uint32_t{2}}}));
+    };
+    EXPECT_THAT(text("generational"), HasSubstr("Each generation replaces all organisms except the 2 best."));
+    EXPECT_THAT(text("steady_state"), HasSubstr("Each generation replaces only the 2 worst organisms."));
+    EXPECT_THAT(text("hybrid"), Not(HasSubstr("replaces")));
+}
+
+TEST(ExperimentSummary, NamesObstaclesAndFreeGenesAndMissingBodies) {
+    EXPECT_THAT(experiment_summary(with({{"obstacle_count", std::uint32_t{5}}, {"crate_count", std::uint32_t{1}}})),
+                HasSubstr("avoid poison (−40) among 5 obstacles and 1 crate. "));
+    EXPECT_THAT(experiment_summary(with({{"free_genes", std::uint32_t{4}}})),
+                HasSubstr("Each has 4 free genes, which its body does not use. "));
+    EXPECT_THAT(experiment_summary(with({{"fitness", std::string{"rastrigin"}}})),
+                StartsWith("50 organisms have no bodies; only their genes count. Fitness is computed from the genes"));
+}
+
 TEST(ExperimentSummary, ClaimsNothingThatControlsOrCostsMakeFalse) {
     Parameters parameters;
     EXPECT_THAT(experiment_summary(parameters), HasSubstr("Each loses 6 health per second and dies"));

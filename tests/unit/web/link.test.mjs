@@ -114,6 +114,60 @@ test("labels are round generations", () => {
 });
 
 test("marks in the same place are joined", () => {
-  const marks = [{ part: 0.101, text: "a" }, { part: 0.102, text: "b" }, { part: 0.9, text: "c" }];
-  assert.deepEqual(page.joined_marks(marks, 10), [{ part: 0.101, texts: ["a", "b"] }, { part: 0.9, texts: ["c"] }]);
+  const mark = (part, text, kind = "change") => ({ part, kind, label: text, text });
+  const [a, b, c, d] = [mark(0.101, "a"), mark(0.102, "b"), mark(0.9, "c"), mark(0.103, "d", "placed")];
+  assert.deepEqual(page.joined_marks([a, b, c, d], 10), [
+    { part: 0.101, texts: ["a", "b"], first: a }, { part: 0.9, texts: ["c"], first: c }, { part: 0.103, texts: ["d"], first: d }]);
+});
+
+// ---- the zoom of the time line ----
+
+const long = { first_generation: 1, last_generation: 500, first_tick: 0, last_tick: 5000 };
+
+test("a zoomed line keeps the place of the pointer", () => {
+  const zoom = new page.TimeZoom();
+  assert.deepEqual(zoom.shown(long), { from: 1, to: 501 });
+  assert.equal(zoom.is_on, false);
+  zoom.zoom(long, 0.5, 10);
+  assert.deepEqual(zoom.shown(long), { from: 226, to: 276 });
+  zoom.zoom(long, 0, 2);
+  assert.deepEqual(zoom.shown(long), { from: 226, to: 251 });
+  zoom.zoom(long, 0.5, 1e9);
+  const { from, to } = zoom.shown(long);
+  assert.equal(to - from, 2, "two generations at least");
+  zoom.zoom(long, 0.5, 1e-9);
+  assert.equal(zoom.is_on, false);
+});
+
+test("a zoomed line moves within the run", () => {
+  const zoom = new page.TimeZoom();
+  zoom.pan(long, 1);
+  assert.equal(zoom.is_on, false, "a line that shows all cannot move");
+  zoom.zoom(long, 0, 10);
+  zoom.pan(long, 0.5);
+  assert.deepEqual(zoom.shown(long), { from: 26, to: 76 });
+  zoom.pan(long, -9);
+  assert.deepEqual(zoom.shown(long), { from: 1, to: 51 });
+  zoom.include(long, 60);
+  assert.deepEqual(zoom.shown(long), { from: 11, to: 61 });
+  zoom.include(long, 5);
+  assert.deepEqual(zoom.shown(long), { from: 5, to: 55 });
+  zoom.include(long, 30);
+  assert.deepEqual(zoom.shown(long), { from: 5, to: 55 });
+});
+
+test("a line that ends at the present follows it", () => {
+  const zoom = new page.TimeZoom(), later = { ...long, last_generation: 520 };
+  zoom.zoom(long, 1, 10);
+  assert.deepEqual(zoom.shown(long), { from: 451, to: 501 });
+  assert.deepEqual(zoom.shown(later), { from: 471, to: 521 });
+  zoom.pan(later, -0.2);
+  assert.deepEqual(zoom.shown({ ...long, last_generation: 600 }), { from: 461, to: 511 });
+  assert.deepEqual(zoom.shown({ ...long, last_generation: 3 }), { from: 1, to: 4 }, "another run is shown as a whole");
+});
+
+test("positions on a zoomed line may be outside it", () => {
+  const scale = new page.TimeScale(range, ticks_of, { from: 2, to: 4 });
+  assert.deepEqual([1, 2, 3, 4].map((generation) => scale.part_of(generation)), [-0.5, 0, 0.5, 1]);
+  assert.deepEqual(scale.moment_at(0.75, 400), { generation: 3, tick: 2250 });
 });

@@ -47,10 +47,10 @@ test("a refusal is on one line and names fields without their paths", () => {
 });
 
 test("speeds are multiples of real time", () => {
-  for (const [speed, text] of [[{ real_time_factor: 1 }, "1×"], [{ real_time_factor: 64 }, "64×"], [{ real_time_factor: 0.125 }, "1/8×"],
-                               [{ real_time_factor: 0.3 }, "0.3×"], [{ max: true }, "max"]]) {
-    assert.equal(page.speed_text(speed), text);
+  for (const [factor, text] of JSON.parse(readFileSync(new URL("../../../proto/vectors/speeds.json", import.meta.url)))) { // as evoctl prints them
+    assert.equal(page.speed_text({ real_time_factor: factor }), text);
   }
+  assert.equal(page.speed_text({ max: true }), "max");
 });
 
 test("the island is named only if there are several", () => {

@@ -5,6 +5,7 @@
 //            for a short time after each change, so that something is shown.
 import type {Breeding} from "../core/protocol";
 import {glass_box_texts} from "../texts/glass_box";
+import {origin_run_of} from "../world/origin";
 import type {ViewedWorld} from "../world/world";
 import {type Comparison, compare} from "./comparison";
 import {type BreedingKey, BreedingRecord, same_key} from "./record";
@@ -26,6 +27,7 @@ export class BreedingFeed {
   shown: BreedingRecord|null = null;
   comparison: Comparison|null = null; // for `shown`; null until all contenders have arrived
   problem = ""; // why no more arrives
+  origin_run = ""; // id of the run in which the chosen generation bred, if the shown world is a fork of it
   newest = 0; // the generation before the shown one; 0: none yet
   last = 0; // the last generation that has bred; in a replay, it may be later than the newest
   chosen = 0;
@@ -50,7 +52,7 @@ export class BreedingFeed {
   }
 
   try_again(): void {
-    this.problem = "";
+    this.problem = this.origin_run = "";
   }
 
   /** follow  shows the newest generation unless the user is in the middle of the steps */
@@ -97,7 +99,7 @@ export class BreedingFeed {
       !current || current.generation !== key.generation || current.run_id !== key.run_id ||
       current.island !== key.island) {
       this.#next = new BreedingRecord(key);
-      this.problem = "";
+      this.problem = this.origin_run = "";
       this.#next_change_ms = now + shown_min_ms;
     }
   }
@@ -128,6 +130,7 @@ export class BreedingFeed {
         (error: Error) => {
           if (record === this.#next || record === this.shown) {
             this.problem = error.message;
+            this.origin_run = origin_run_of(error);
           }
         })
       .finally(() => {

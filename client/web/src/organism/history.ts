@@ -52,6 +52,7 @@ export class OrganismHistory {
   picks: Picks|null = null;
   origin: Origin = "unknown";
   children: Child[]|null = null; // null: unknown
+  parents_bred_elsewhere = false; // before the run began, which is a fork
   children_left_out = false; // the next generation is too large to search it
   #parent_picks: Picks[] = [];
   #descendants_read = 0;
@@ -102,7 +103,7 @@ export class OrganismHistory {
   wanted(has_bred: boolean): BreedingRequest|null {
     const {island, generation} = this.place;
     for (const parent of distinct_parents(this.info)) {
-      if (!this.picks_of_parent(parent)) {
+      if (!this.picks_of_parent(parent) && !this.parents_bred_elsewhere) {
         return {
           island,
           generation: generation - 1,

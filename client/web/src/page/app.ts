@@ -8,21 +8,27 @@ import {set_attribute} from "../widgets/controls";
 import {copy_text} from "../widgets/copy";
 import {h} from "../widgets/dom";
 import {event_text, noticed_events} from "../world/event_text";
-import {FitnessCurve} from "../plots/fitness_curve";
+import {Evolution} from "./evolution";
+import {Introduction} from "./introduction";
 import {LinkFollower} from "./link_follower";
 import {link_of} from "../world/link";
 import {unused_name} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
 import {Help, type KeyTarget, listen_to_keys} from "./keys";
 import {Banners, Notices, type Notify} from "../widgets/notices";
+import {Overview} from "./overview";
 import type {PaneArea} from "./pane_area";
 import {PaneAreas} from "./pane_areas";
+import {SecondWorld} from "./second_world";
 import type {Server} from "../world/server";
 import {of_browser} from "../world/storage";
 import {app_texts} from "../texts/app";
+import {evolution_texts} from "../texts/evolution";
+import {undo_texts} from "../texts/undo";
 import {theme_button} from "../widgets/theme";
 import type {Tokens} from "../world/tokens";
 import {Tools} from "./tools";
+import {undo} from "../world/undo_command";
 import type {ViewedWorld} from "../world/world";
 import {banners_of} from "./banners";
 
@@ -32,15 +38,17 @@ export class App implements KeyTarget {
   readonly element: HTMLElement;
   readonly column: Column;
   readonly panes: PaneAreas;
+  readonly evolution: Evolution;
+  readonly introduction: Introduction;
 
   readonly #empty: HTMLElement;
   readonly #banners = new Banners();
   readonly #notices = new Notices();
   readonly #help = new Help(this);
   readonly #link = new LinkFollower(this, () => this.refresh());
-  readonly #curve: FitnessCurve;
   readonly #show_column: HTMLButtonElement;
   readonly #tokens: Tokens;
+  #second: SecondWorld|null = null;
 
   constructor(readonly server: Server, tokens: Tokens) {
     this.#tokens = tokens;
@@ -53,9 +61,15 @@ export class App implements KeyTarget {
       attempt: this.attempt,
       copy_link: this.copy_link,
       on_select: () => this.#show_organism(),
+      on_placed: () => offer_undo(this),
       on_change: () => this.#refresh_column(),
+      choose_second: () => (this.#second ??= new SecondWorld(this)).open(),
     });
-    this.#curve = new FitnessCurve((generation) => void this.attempt(() => this.world().past.show(generation)));
+    this.evolution = new Evolution(this, () => this.refresh());
+    const offer =
+      h("button", {type: "button", class: "button button-primary", onclick: () => this.evolution.toggle()},
+        evolution_texts.show);
+    this.introduction = new Introduction(offer);
     const button = (label: string, name: string, help: string, classes: string, act: () => void) =>
       h("button", {type: "button", class: `button square ${classes}`, "aria-label": name, title: help, onclick: act},
         label);
@@ -64,14 +78,14 @@ export class App implements KeyTarget {
     this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
     const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, panels.map((make) => make(this)), new Tools(this, () => this.panes.focused.pane.tool),
-      [theme_button(), help, hide]);
-    this.column.curve.append(this.#curve.element);
+      this, server, new Overview(this, this.evolution.button), panels.map((make) => make(this)),
+      new Tools(this, () => this.panes.focused.pane.tool), [theme_button(), help, hide]);
     this.element =
       h("div", {class: "app"},
         h("a", {class: "button skip", href: "#worlds", onclick: (event: Event) => skip_to(this.panes, event)},
           app_texts.skip),
-        this.#banners.element, this.panes.element, this.#show_column, this.column.element, this.#notices.element);
+        this.#banners.element, this.panes.element, this.introduction.element, this.#show_column, this.column.element,
+        this.#notices.element);
     set_attribute(this.element, "data-column", of_browser.get("column") === "collapsed" ? "collapsed" : "shown");
     server.on_change(() => this.refresh());
     server.on_event((event) => this.#announce(event));
@@ -89,7 +103,6 @@ export class App implements KeyTarget {
   refresh(): void {
     const server = this.server, names = server.world_names, {areas} = this;
     this.#notices.refresh();
-    this.#banners.set(banners_of(server, this.#tokens, this.#link, () => this.refresh()));
     const first = names.includes(first_world) ? first_world : names[0];
     if (server.worlds_known && !areas[0]!.world.name && first !== undefined) {
       areas[0]!.world.show(first);
@@ -115,6 +128,11 @@ export class App implements KeyTarget {
     return this.panes.focused.world;
   }
 
+  /** The world of the other pane if two are shown side by side. */
+  other(): ViewedWorld|null {
+    return this.panes.other?.world ?? null;
+  }
+
   open = (name: string, subject?: {[key: string]: unknown}): void => {
     const panel = this.column.panels.find((one) => one.name === name);
     if (!panel) {
@@ -138,7 +156,7 @@ export class App implements KeyTarget {
     return () => this.panes.focused.pane.tool === tool && tool.tool === "organism" && tool.model === model;
   };
 
-  notify: Notify = (text, holds) => this.#notices.show(text, holds);
+  notify: Notify = (text, holds, action) => this.#notices.show(text, holds, action);
 
   attempt = async(what: () => Promise<unknown>): Promise<boolean> => {
     try {
@@ -159,6 +177,10 @@ export class App implements KeyTarget {
 
   show_beside(world: string, island = 0): ViewedWorld {
     return this.panes.show_beside(world, island);
+  }
+
+  show_second(world: string, island = 0): ViewedWorld {
+    return this.panes.show_second(world, island);
   }
 
   fork = async(name?: string): Promise<void> => {
@@ -222,7 +244,8 @@ export class App implements KeyTarget {
   #refresh_column(): void {
     if (this.column as Column | undefined) { // the first pane is there before the column
       this.column.refresh();
-      this.#curve.update(this.world());
+      this.evolution.refresh();
+      this.#banners.set(banners_of(this.server, this.#tokens, this.#link, this.evolution, () => this.refresh()));
       this.#notices.refresh();
       document.title = app_texts.title(this.world().name);
     }
@@ -244,4 +267,14 @@ function skip_to({focused, element}: PaneAreas, event: Event): void {
   event.preventDefault();
   const island = focused.element.querySelector<HTMLElement>("canvas:not([inert]), .island-tile[tabindex='0']");
   (island ?? element).focus();
+}
+
+/** Says what the user has placed, with a button that removes it again. */
+function offer_undo(app: App): void {
+  const world = app.world(), name = world.undo.next_undo;
+  const is_last = (): boolean => app.world() === world && world.undo.next_undo === name;
+  if (name !== "") {
+    const act = (): void => (is_last() ? void undo(app, "undo") : app.notify(undo_texts.not_last(name)));
+    app.notify(undo_texts.done(name), undefined, {label: undo_texts.undo, act});
+  }
 }

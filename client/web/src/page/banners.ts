@@ -5,11 +5,16 @@ import {session_text} from "../texts/users";
 import type {Banner} from "../widgets/notices";
 import type {Server} from "../world/server";
 import type {Tokens} from "../world/tokens";
+import type {Evolution} from "./evolution";
 import type {LinkFollower} from "./link_follower";
 
 /** on_decline: called after the user has declined the token of a link. */
-export function banners_of(server: Server, tokens: Tokens, link: LinkFollower, on_decline: () => void): Banner[] {
-  return [...of_connection(server), ...of_token(server, tokens, on_decline), ...link.banners(), ...of_storage(server)];
+export function banners_of(
+  server: Server, tokens: Tokens, link: LinkFollower, evolution: Evolution, on_decline: () => void): Banner[] {
+  return [
+    ...of_connection(server), ...of_token(server, tokens, on_decline), ...link.banners(), ...of_storage(server),
+    ...evolution.banners()
+  ];
 }
 
 function of_connection(server: Server): Banner[] {

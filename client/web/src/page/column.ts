@@ -4,32 +4,36 @@ import {h} from "../widgets/dom";
 import type {Panel, PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
 import {of_browser} from "../world/storage";
+import type {Overview} from "./overview";
 import {PanelTabs} from "./panel_tabs";
 import {Summary} from "./summary";
 import type {Tools} from "./tools";
 
-const narrow = "(max-width: 800px)"; // there the description is hidden until the user opens it
+/** Windows with room for the overview above a panel; app.css has the same sizes. */
+const tall = "(min-height: 900px) and (min-width: 701px)";
+const stacked = "(max-width: 700px)"; // the column is below the world, and scrolls as a whole
 
 export class Column {
   readonly element: HTMLElement;
-  readonly panels: Panel[];
+  readonly panels: Panel[]; // without the overview
+  readonly #overview: Overview;
   readonly #summary: Summary;
   readonly #tabs: PanelTabs;
+  readonly #tall = matchMedia(tall);
 
-  constructor(context: PanelContext, server: Server, panels: Panel[], tools: Tools, head: HTMLElement[]) {
+  constructor(
+    context: PanelContext, server: Server, overview: Overview, panels: Panel[], tools: Tools, head: HTMLElement[]) {
     this.panels = panels;
-    this.#summary = new Summary(context, server, tools, head, !matchMedia(narrow).matches);
-    this.#tabs = new PanelTabs(panels, (panel) => this.show(panel));
+    this.#overview = overview;
+    this.#summary = new Summary(context, server, tools, head);
+    this.#tabs = new PanelTabs(overview, panels, (panel) => this.show(panel));
     this.element =
       h("aside", {class: "column", id: "column", "aria-label": column_texts.name}, this.#summary.element,
         this.#tabs.tabs, this.#tabs.body);
+    this.#tall.addEventListener("change", () => this.#place_overview());
+    this.#place_overview();
     const remembered = panels.find((panel) => panel.name === of_browser.get("panel"));
-    this.show(remembered ?? panels[0]!);
-  }
-
-  /** The live fitness curve goes here. */
-  get curve(): HTMLElement {
-    return this.#summary.curve;
+    this.#show(remembered ?? this.#first);
   }
 
   /** Shows a panel. */
@@ -37,18 +41,44 @@ export class Column {
     if (panel === this.#tabs.shown) {
       return;
     }
-    this.element.dataset.shown = panel.name; // tall panels hide the description in a low window
-    of_browser.set("panel", panel.name);
-    this.#tabs.show(panel);
-    // If the column itself scrolls, the panel begins below the tabs. Narrow screens have too little room to show it
-    // below the summary.
-    const summary_px = this.#summary.element.offsetHeight;
-    this.element.scrollTop = matchMedia(narrow).matches ? summary_px : Math.min(this.element.scrollTop, summary_px);
-    panel.refresh();
+    of_browser.set("panel", panel === this.#first ? "" : panel.name);
+    this.#show(panel);
+    if (matchMedia(stacked).matches) { // else there is too little room to show it below the summary
+      this.#tabs.tabs.scrollIntoView({block: "start"});
+    }
   }
 
   refresh(): void {
     this.#summary.refresh();
+    if (this.#tall.matches) {
+      this.#overview.refresh();
+    }
     this.#tabs.shown?.refresh();
+  }
+
+  get #first(): Panel {
+    return this.#tall.matches ? this.panels[0]! : this.#overview;
+  }
+
+  #show(panel: Panel): void {
+    this.element.dataset.shown = panel.name;
+    this.#tabs.show(panel);
+    panel.refresh();
+  }
+
+  #place_overview(): void {
+    const is_tall = this.#tall.matches, is_shown = this.#tabs.shown === this.#overview;
+    this.#tabs.set_first(!is_tall);
+    if (is_tall) {
+      this.#overview.element.hidden = false;
+      this.#summary.details.append(this.#overview.element);
+      if (is_shown) {
+        this.#show(this.#first);
+      }
+    } else {
+      this.#overview.element.hidden = !is_shown;
+      this.#tabs.body.prepend(this.#overview.element);
+    }
+    this.#overview.refresh();
   }
 }

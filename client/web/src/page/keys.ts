@@ -2,6 +2,7 @@
 import type {RequestKind} from "../core/messages";
 import type {Point} from "../render/camera";
 import {app_texts} from "../texts/app";
+import {introduction_texts} from "../texts/introduction";
 import {gesture_help, key_help, key_texts} from "../texts/keys";
 import {Dialog} from "../widgets/controls";
 import {h} from "../widgets/dom";
@@ -9,6 +10,8 @@ import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
 import {undo, undo_verb_of} from "../world/undo_command";
 import type {Column} from "./column";
+import type {Evolution} from "./evolution";
+import type {Introduction} from "./introduction";
 import type {PaneAreas} from "./pane_areas";
 import {toggle_replay} from "./run_bar";
 
@@ -20,6 +23,8 @@ export interface KeyTarget extends PanelContext {
   link(): string;
   toggle_column(): void;
   toggle_help(): void;
+  readonly evolution: Evolution;
+  readonly introduction: Introduction;
 }
 
 interface Binding {
@@ -84,6 +89,7 @@ const bindings: Binding[] = [
   {keys: ["["], help: key_help.previous_generation, act: (app) => move_generation(app, -1)},
   {keys: ["]"], help: key_help.next_generation, act: (app) => move_generation(app, 1)},
   {keys: ["b"], help: key_help.beside, act: (app) => app.panes.toggle_beside()},
+  {keys: ["e"], help: key_help.evolution, act: (app) => app.evolution.toggle()},
   {keys: ["x"], help: key_help.other_world, act: (app) => app.panes.focus_other()},
   {keys: ["k"], help: key_help.link, act: (app) => app.panes.toggle_link()},
   {keys: ["f", "Home"], shown: "F   Home", help: key_help.fit, act: (app) => app.panes.focused.pane.view.fit()},
@@ -208,7 +214,12 @@ export class Help {
         ...panels.map((panel, i): [string, string] => [String(i + 1), key_texts.panel(panel.title)]),
         ...gesture_help,
       ];
+      const again = (): void => {
+        this.#dialog?.close();
+        this.#app.introduction.begin();
+      };
       this.#dialog.body.append(
+        h("button", {type: "button", class: "button", onclick: again}, introduction_texts.again),
         h("dl", {class: "keys"},
           ...lines.map(
             ([keys, help]) =>

@@ -32,6 +32,8 @@ export interface PaneOptions {
   on_focus?(): void;
   /** Called when the user has selected an organism in the pane. */
   on_select?(): void;
+  /** Called after the user has placed something in the pane. */
+  on_placed?(): void;
   /** Called after the tool was changed, by set_tool() or by the pane. */
   on_tool?(): void;
   /** Called after the view has moved, and after the size of the island is known first. */
@@ -228,10 +230,12 @@ export class Pane {
         this.#options.on_select?.();
       }
     } else if (picked.x_px >= 0) { // it is on the island
-      const problem = await this.tool.use(picked);
+      const places = this.tool.tool !== "remove", problem = await this.tool.use(picked);
       if (problem !== "") {
         const holds = (): boolean => this.tool.problem() === problem;
         this.#options.notify(problem, holds() ? holds : undefined); // otherwise the server has refused it
+      } else if (places) {
+        this.#options.on_placed?.();
       }
     }
   }

@@ -43,6 +43,7 @@ export class PaneArea {
   readonly #beside = icon_button("pane-beside");
   readonly #foot = h("div", {class: "strip pane-foot"});
   readonly #message = h("p", {class: "pane-message", role: "status"});
+  readonly #caption = h("p", {class: "pane-caption", hidden: true});
 
   constructor(readonly world: ViewedWorld, options: PaneAreaOptions) {
     this.pane = new Pane({...options, world});
@@ -60,7 +61,8 @@ export class PaneArea {
       h("section", {class: "pane-area", "aria-label": pane_texts.world},
         h("div", {class: "strip pane-head"}, this.#generation, this.#replay, h("span", {class: "grow"}), this.#place,
           this.#state, this.#islands, this.#link, this.#beside),
-        h("div", {class: "pane-stage"}, this.pane.element, this.#message), this.timeline.element, this.#foot);
+        this.#caption, h("div", {class: "pane-stage"}, this.pane.element, this.#message), this.timeline.element,
+        this.#foot);
     this.set_beside(false, false);
     world.changes.listen(() => this.#refresh());
     this.#refresh();
@@ -73,6 +75,12 @@ export class PaneArea {
       notify(problem, () => this.pane.tiles.problem === problem);
     }
     this.#refresh();
+  }
+
+  /** A sentence above the island; empty: none. */
+  set_caption(text: string): void {
+    set_text(this.#caption, text);
+    this.#caption.hidden = text === "";
   }
 
   /** are_two: whether the pane is one of two; are_linked: whether both move together. */

@@ -1,5 +1,5 @@
 // PaneAreas: the shown worlds, one or two next to each other, and which of them has the focus.
-import {link_texts} from "../texts/pane";
+import {link_texts, pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
 import type {Server} from "../world/server";
@@ -7,13 +7,16 @@ import {ViewedWorld} from "../world/world";
 import {LinkedViews} from "./linked_views";
 import {PaneArea, type PaneAreaOptions} from "./pane_area";
 
-export interface PaneAreasOptions extends Pick<PaneAreaOptions, "notify"|"attempt"|"copy_link"|"on_select"> {
+export interface PaneAreasOptions extends
+  Pick<PaneAreaOptions, "notify"|"attempt"|"copy_link"|"on_select"|"on_placed"> {
   /** Called after a change that the column and the title show. */
   on_change(): void;
+  /** Lets the user choose the second world. */
+  choose_second(): void;
 }
 
 export class PaneAreas {
-  readonly element = h("main", {class: "worlds", id: "worlds", tabindex: -1});
+  readonly element = h("main", {class: "worlds", id: "worlds", tabindex: -1, "aria-label": pane_texts.shown});
   readonly all: PaneArea[] = [];
   #focused = 0;
   #last_pane = -1;
@@ -43,34 +46,43 @@ export class PaneAreas {
 
   /** Shows a world in the other half, and focuses it. */
   show_beside(world: string, island = 0): ViewedWorld {
-    const area = this.other ?? this.#add();
-    area.world.show(world, island);
+    const area = this.#other_showing(world, island);
     this.#focus(area);
     return area.world;
   }
 
-  /** Shows a second world; or, if two are shown, only the focused one. The second one is the world that was forked
-   *  last; else the live world of a replay; else the next world of the list; else the past of the only world. */
+  /** Shows a world in the other half. The focus stays. */
+  show_second(world: string, island = 0): ViewedWorld {
+    const area = this.#other_showing(world, island);
+    this.#focus(this.focused);
+    return area.world;
+  }
+
+  #other_showing(world: string, island: number): PaneArea {
+    const area = this.other ?? this.#add();
+    area.world.show(world, island);
+    return area;
+  }
+
+  /** Shows only the world that was shown first again. */
+  close_second(): void {
+    if (this.other) {
+      this.close(this.all[1]!);
+    }
+  }
+
+  /** are_ordered: the second world is the past of the first one, and is shown at its left. */
+  set_captions(text_of: (world: ViewedWorld) => string, are_ordered: boolean): void {
+    set_attribute(this.element, "data-past-first", are_ordered ? "" : null);
+    this.all.forEach((area) => area.set_caption(text_of(area.world)));
+  }
+
+  /** Lets the user choose a second world; or, if two are shown, shows only the first one again. */
   toggle_beside(): void {
     if (this.other) {
-      this.close(this.other);
-      return;
-    }
-    const server = this.#server, shown = this.focused.world, {name, island} = shown;
-    const names = server.world_names;
-    const next = names[(names.indexOf(name) + 1) % names.length];
-    if (shown.past.forked && server.world(shown.past.forked)) {
-      this.show_beside(shown.past.forked, island);
-    } else if (shown.past.is_own_replay) {
-      this.show_beside(name, island);
-    } else if (next !== undefined && next !== name) {
-      this.show_beside(next);
-    } else if (shown.past.problem) {
-      const {problem} = shown.past;
-      this.#options.notify(problem, () => shown.past.problem === problem);
+      this.close_second();
     } else {
-      const generation = shown.snapshot?.generation ?? 1, past = this.show_beside(name, island);
-      void this.#options.attempt(() => past.past.show(generation));
+      this.#options.choose_second();
     }
   }
 

@@ -26,7 +26,7 @@ export class PaneView {
   shows_all = false;
 
   /** What was shown before an organism was followed; null: none is followed. */
-  #before_follow: {camera: Camera | null}|null = null;
+  #before_follow: {camera: Camera|null}|null = null;
   readonly #world: ViewedWorld;
   readonly #on_move: (view: PaneView) => void;
 

@@ -14,11 +14,11 @@ export class PanelTabs {
   readonly #panels: readonly Panel[];
   readonly #show: (panel: Panel) => void;
 
-  /** show: called when the user chooses a panel. */
-  constructor(panels: readonly Panel[], show: (panel: Panel) => void) {
-    this.#panels = panels;
+  /** first: has no key, and no tab while set_first(false) holds; show: called when the user chooses a panel. */
+  constructor(first: Panel, panels: readonly Panel[], show: (panel: Panel) => void) {
+    this.#panels = [first, ...panels];
     this.#show = show;
-    panels.forEach((panel, i) => this.#add(panel, i));
+    this.#panels.forEach((panel, i) => this.#add(panel, i));
   }
 
   get shown(): Panel|null {
@@ -31,9 +31,17 @@ export class PanelTabs {
       const is_shown = one === panel, tab = this.#tab_of(one);
       set_attribute(tab, "aria-selected", String(is_shown));
       tab.tabIndex = is_shown ? 0 : -1;
-      one.element.hidden = !is_shown;
+      one.element.hidden = !is_shown && this.body.contains(one.element);
     }
     this.body.scrollTop = 0;
+  }
+
+  /** Whether the first panel has a tab; without one, it is outside the body, and always shown. */
+  set_first(has_tab: boolean): void {
+    const panel = this.#panels[0]!, tab = this.#tab_of(panel);
+    tab.hidden = !has_tab;
+    set_attribute(panel.element, "role", has_tab ? "tabpanel" : null);
+    set_attribute(panel.element, "aria-labelledby", has_tab ? tab.id : null);
   }
 
   #add(panel: Panel, i: number): void {
@@ -44,7 +52,7 @@ export class PanelTabs {
         role: "tab",
         id: `tab-${i}`,
         "aria-controls": `panel-${i}`,
-        title: i < keys_max ? column_texts.key(i + 1) : null,
+        title: i > 0 && i <= keys_max ? column_texts.key(i) : null,
         onclick: () => this.#show(panel),
         onkeydown: (event: KeyboardEvent) => this.#move(event, i),
       },
@@ -62,10 +70,10 @@ export class PanelTabs {
   }
 
   #move(event: KeyboardEvent, i: number): void {
-    const last = this.#panels.length - 1;
-    const to = event.key === "ArrowRight" || event.key === "ArrowDown" ? (i === last ? 0 : i + 1) :
-      event.key === "ArrowLeft" || event.key === "ArrowUp"             ? (i === 0 ? last : i - 1) :
-      event.key === "Home"                                             ? 0 :
+    const first = this.#tab_of(this.#panels[0]!).hidden ? 1 : 0, last = this.#panels.length - 1;
+    const to = event.key === "ArrowRight" || event.key === "ArrowDown" ? (i === last ? first : i + 1) :
+      event.key === "ArrowLeft" || event.key === "ArrowUp"             ? (i === first ? last : i - 1) :
+      event.key === "Home"                                             ? first :
       event.key === "End"                                              ? last :
                                                                          -1;
     const panel = this.#panels[to];

@@ -1,6 +1,7 @@
 // RunBar: the controls of the shown world that are always in reach: run and pause, one generation, replay, fork, speed.
 import {shown_number} from "../texts/numbers";
 import {run_bar_texts as texts} from "../texts/run_bar";
+import {both_texts} from "../texts/second_world";
 import {speed_text} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -8,6 +9,7 @@ import {speed_max} from "../world/control";
 
 import type {ViewedWorld} from "../world/world";
 import type {PanelContext} from "../world/panel_context";
+import {both_state, run_or_pause_both} from "./run_both";
 
 const slider_min = 0.1; // times real time; + and − reach the whole range of the server
 const slider_steps = 100; // 1, 10 and 100 times real time are steps
@@ -16,6 +18,7 @@ export class RunBar {
   readonly element: HTMLElement;
 
   #run: HTMLButtonElement;
+  #both: HTMLButtonElement; // if two worlds are shown
   #generation: HTMLButtonElement;
   #replay: HTMLButtonElement;
   #fork: HTMLButtonElement;
@@ -25,6 +28,7 @@ export class RunBar {
   #slider: HTMLInputElement;
   #value = h("output", {class: "speed-value"});
   #max: HTMLButtonElement;
+  #speed: HTMLElement;
   #slowed = h("p", {class: "hint"});
   #dragged = false;
   #sent_at = 0;
@@ -37,6 +41,7 @@ export class RunBar {
       guarded_button(label, context.notify, () => act(context.world()), classes);
     this.#run =
       button(texts.run, (world) => this.#attempt(() => world.control.pause_or_resume()), "button button-primary run");
+    this.#both = button(both_texts.run, () => void run_or_pause_both(context), "button both");
     this.#generation = button(texts.generation, (world) => this.#attempt(() => world.control.run(1)));
     this.#replay = button(texts.replay, (world) => toggle_replay(context, world));
     this.#fork = button(texts.fork, () => void context.fork());
@@ -56,12 +61,13 @@ export class RunBar {
       oninput: () => this.#drag(),
       onchange: () => this.#drop(),
     });
+    this.#speed =
+      h("div", {class: "row speed"}, h("span", {}, texts.speed), this.#slower, this.#slider, this.#faster, this.#value,
+        this.#max);
     this.element =
       h("div", {class: "run-bar"},
-        h("div", {class: "row"}, this.#run, this.#generation, this.#replay, this.#fork, this.#new),
-        h("div", {class: "row speed"}, h("span", {}, texts.speed), this.#slower, this.#slider, this.#faster,
-          this.#value, this.#max),
-        this.#slowed);
+        h("div", {class: "row"}, this.#run, this.#both, this.#generation, this.#replay, this.#fork, this.#new),
+        this.#speed, this.#slowed);
   }
 
   refresh(): void {
@@ -78,6 +84,10 @@ export class RunBar {
         world.control.state === "RUN_STATE_PAUSED" ? texts.resume :
                                                      texts.run);
     set_allowed(this.#run, why_run, texts.run_help);
+    const both = both_state(this.#context);
+    this.#both.hidden = both === null;
+    set_text(this.#both, both?.is_pause ? both_texts.pause : both_texts.run);
+    set_allowed(this.#both, both?.why_not ?? "", both_texts.run_help);
     set_allowed(this.#generation, why_run, texts.generation_help);
     set_text(this.#replay, world.past.is_own_replay ? texts.live : texts.replay);
     set_allowed(
@@ -88,6 +98,7 @@ export class RunBar {
     set_allowed(this.#new, why_create, texts.create_help);
     const why_speed = why_control && (server.why_not("set_speed", world.shown) || why_control),
           max = world.control.speed?.max === true;
+    set_attribute(this.#speed, "data-allowed", String(why_speed === "")); // without permission, it takes room in vain
     set_allowed(this.#slower, why_speed, texts.slower_help);
     set_allowed(this.#faster, why_speed || (max ? texts.is_fastest : ""), texts.faster_help);
     set_allowed(this.#max, why_speed, texts.max_help);

@@ -1,5 +1,5 @@
-// Summary: the top of the column: which world is shown, what its organisms try to do, what the marks mean, the
-// healthiest organisms, the live fitness curve, run control, and taking part.
+// Summary: the top of the column: which world is shown, what its organisms try to do, what the marks mean, run control,
+// and taking part.
 import {column_texts as texts} from "../texts/column";
 import {session_text} from "../texts/users";
 import {set_attribute, set_options} from "../widgets/controls";
@@ -11,12 +11,10 @@ import {Legend} from "./legend";
 import {RunBar} from "./run_bar";
 import type {Tools} from "./tools";
 
-const named = 3; // healthiest organisms
-
 export class Summary {
   readonly element: HTMLElement;
-  /** The live fitness curve goes here. */
-  readonly curve = h("div", {class: "curve"});
+  /** Tall windows show the overview here. */
+  readonly details: HTMLElement;
 
   readonly #context: PanelContext;
   readonly #server: Server;
@@ -31,32 +29,25 @@ export class Summary {
   });
   readonly #experiment = h("p", {class: "experiment"});
   readonly #legend = new Legend();
-  readonly #healthiest = h("span", {});
-  readonly #buttons: readonly HTMLButtonElement[]; // of the healthiest organisms
   readonly #run_bar: RunBar;
   readonly #part: HTMLInputElement;
   readonly #part_text = h("span", {class: "hint grow"});
   readonly #session = h("span", {class: "hint session", title: texts.session});
 
-  /** head: further buttons at the top; are_details_shown: unless the user has decided. */
-  constructor(context: PanelContext, server: Server, tools: Tools, head: HTMLElement[], are_details_shown: boolean) {
+  /** head: further buttons at the top. */
+  constructor(context: PanelContext, server: Server, tools: Tools, head: HTMLElement[]) {
     this.#context = context;
     this.#server = server;
     this.#tools = tools;
     this.#run_bar = new RunBar(context);
     this.#part =
       h("input", {type: "checkbox", role: "switch", onchange: () => server.set_taking_part(this.#part.checked)});
-    this.#buttons = Array.from(
-      {length: named},
-      (_, i) => h("button", {type: "button", class: "link", onclick: () => this.#select_healthiest(i)}));
-    const details =
-      h("div", {class: "summary-details", id: "summary-details"}, this.#experiment, this.#legend.element,
-        h("p", {class: "healthiest"}, this.#healthiest, ...this.#buttons), this.curve);
+    this.details = h("div", {class: "summary-details", id: "summary-details"}, this.#experiment, this.#legend.element);
     this.element =
       h("div", {class: "summary"},
         h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,
-          details_button(details, are_details_shown), ...head),
-        details, this.#run_bar.element,
+          details_button(this.details), ...head),
+        this.details, this.#run_bar.element,
         h("div", {class: "row part"}, h("label", {class: "check"}, this.#part, texts.take_part), this.#part_text,
           this.#session),
         tools.element);
@@ -69,7 +60,6 @@ export class Summary {
     const state_text = is_damaged ? texts.is_damaged : world.name ? texts.loading : texts.none_open;
     set_text(this.#experiment, world.parameters.experiment || state_text);
     this.#legend.refresh(world);
-    this.#refresh_healthiest();
     this.#run_bar.refresh();
     this.#part.checked = taking_part;
     this.#part.disabled = !server.may_take_part;
@@ -96,51 +86,28 @@ export class Summary {
       this.#island, Array.from({length: islands}, (_, i) => ({value: String(i), text: texts.island_named(i)})),
       String(world.island));
   }
-
-  #refresh_healthiest(): void {
-    const {feed: {healthiest}, selection: {id: selected}, snapshot} = this.#context.world();
-    this.#buttons.forEach((button, i) => {
-      const organism = healthiest[i];
-      button.hidden = !organism;
-      set_text(button, organism ? texts.organism(organism.id, organism.health) : "");
-      set_attribute(button, "aria-pressed", String(organism !== undefined && organism.id === selected));
-    });
-    set_text(
-      this.#healthiest,
-      healthiest.length > 0                   ? texts.healthiest :
-        !snapshot                             ? "" :
-        (snapshot.live?.alive_count ?? 0) > 0 ? texts.zoom_in :
-                                                texts.none_alive);
-  }
-
-  #select_healthiest(i: number): void {
-    const world = this.#context.world(), organism = world.feed.healthiest[i];
-    if (organism) {
-      world.selection.select(organism.id);
-    }
-  }
 }
 
-/** The button that hides or shows the description. The browser remembers what the user has chosen. */
-function details_button(details: HTMLElement, are_shown: boolean): HTMLButtonElement {
+/** The button that hides or shows the description in a tall window. The browser remembers what the user has chosen. */
+function details_button(details: HTMLElement): HTMLButtonElement {
   const button = h("button", {
     type: "button",
-    class: "button button-quiet square",
+    class: "button button-quiet square tall-only",
     "aria-controls": details.id,
     onclick: () => {
-      of_browser.set("details", details.hidden ? "shown" : "hidden");
-      set_shown(details.hidden);
+      const is_shown = details.dataset.folded === "true";
+      of_browser.set("details", is_shown ? "" : "hidden");
+      set_shown(is_shown);
     }
   });
   const set_shown = (is_shown: boolean): void => {
-    details.hidden = !is_shown;
+    set_attribute(details, "data-folded", String(!is_shown));
     set_text(button, is_shown ? "▴" : "▾");
     set_attribute(button, "aria-expanded", String(is_shown));
     const label = is_shown ? texts.hide_description : texts.show_description;
     set_attribute(button, "aria-label", label);
     set_attribute(button, "title", label);
   };
-  const remembered = of_browser.get("details");
-  set_shown(remembered === "" ? are_shown : remembered === "shown");
+  set_shown(of_browser.get("details") !== "hidden");
   return button;
 }

@@ -1,21 +1,29 @@
-// TimeSlider: the line of the generations of a run: its knob shows the shown moment, and the user drags along the line
-// or presses keys to show another one.
-import {timeline_texts} from "../texts/timeline";
+// TimeSlider: the line of the generations of a run, or of a part of them: its knob shows the shown moment, and the user
+// drags along the line or presses keys to show another one.
+import {timeline_texts as texts} from "../texts/timeline";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {type Moment, TimeScale} from "../world/time_scale";
+import {type Moment, TimeScale, TimeZoom} from "../world/time_scale";
 import type {ViewedWorld} from "../world/world";
 import type {Seeker} from "./seeker";
+import {TimeGestures} from "./time_gestures";
 import {percent, TimeMarks} from "./time_marks";
 
 const texts_max = 3; // of marks at the pointer
-const mark_px = 4; // a mark at most so far from the pointer is described
+const mark_px = 5; // a mark at most so far from the pointer is described
 const key_ticks = 60, page_generations = 10;
+const key_zoom_factor = 2;
 const steps: {[key: string]: number} = {
   ArrowLeft: -1,
   ArrowDown: -1,
   ArrowRight: 1,
   ArrowUp: 1
+};
+const zooms: {[key: string]: number} = {
+  "+": key_zoom_factor,
+  "=": key_zoom_factor,
+  "-": 1 / key_zoom_factor,
+  "_": 1 / key_zoom_factor
 };
 
 export class TimeSlider {
@@ -24,11 +32,12 @@ export class TimeSlider {
   readonly #knob = h("div", {class: "time-knob"});
   readonly #bubble = h("div", {class: "time-bubble", hidden: true});
   readonly #marks: TimeMarks;
+  readonly #zoom = new TimeZoom();
+  readonly #gestures: TimeGestures;
   readonly #world: ViewedWorld;
   readonly #seeker: Seeker;
   readonly #observer: ResizeObserver;
   #width_px = 0;
-  #is_pressed = false;
   #dragged: number|null = null; // where the pointer is while it is pressed, and was until the last seek is answered
   #hovered: number|null = null;
 
@@ -41,15 +50,20 @@ export class TimeSlider {
         class: "time-line",
         tabindex: 0,
         role: "slider",
-        "aria-label": timeline_texts.slider,
-        onpointerdown: (event: PointerEvent) => this.#press(event),
-        onpointermove: (event: PointerEvent) => this.#move(event),
-        onpointerup: () => this.#release(),
-        onpointercancel: () => this.#release(),
-        onpointerleave: () => this.#hover(null),
+        "aria-label": texts.slider,
         onkeydown: (event: KeyboardEvent) => this.#key(event),
+        onfocus: () => this.refresh(),
+        onblur: () => this.refresh(),
       },
         this.#marks.labels, h("div", {class: "time-bar"}, this.#fill), this.#marks.marks, this.#knob, this.#bubble);
+    this.#gestures = new TimeGestures(this.element, {
+      is_zoomed: () => this.is_zoomed,
+      chosen: (part) => this.#drag_to(part),
+      hovered: (part) => this.#hover(part),
+      zoomed: (part, factor) => this.zoom(factor, part),
+      panned: (parts) => this.#pan(parts),
+      released: () => this.#release(),
+    });
     this.#observer = new ResizeObserver((entries) => {
       this.#width_px = entries[entries.length - 1]!.contentRect.width;
       this.refresh();
@@ -62,9 +76,29 @@ export class TimeSlider {
     this.#marks.close();
   }
 
+  /** Whether the line shows only a part of the run. */
+  get is_zoomed(): boolean {
+    return this.#zoom.is_on;
+  }
+
+  /** Multiplies the zoom. part: the position that stays; absent: that of the shown moment. */
+  zoom(factor: number, part?: number): void {
+    const {range} = this.#world.past, scale = this.#scale();
+    if (range && scale) {
+      this.#zoom.zoom(range, part ?? Math.min(Math.max(this.#shown_part(scale), 0), 1), factor);
+      this.refresh();
+    }
+  }
+
+  /** Shows the whole run. */
+  show_all(): void {
+    this.#zoom.show_all();
+    this.refresh();
+  }
+
   /** No seek runs any more: the knob shows the shown moment again. */
   seek_ended(): void {
-    if (!this.#is_pressed) {
+    if (!this.#gestures.is_choosing) {
       this.#dragged = null;
     }
     this.refresh();
@@ -75,21 +109,37 @@ export class TimeSlider {
     if (!scale || !snapshot) {
       return;
     }
-    const shown_part = world.is_replay ? scale.part_of(snapshot.generation, snapshot.tick) : 1;
-    const part = this.#dragged ?? this.#place_of(scale, world.past.target) ?? shown_part;
-    this.#knob.style.left = this.#fill.style.width = percent(part);
-    const tick = world.is_replay ? timeline_texts.tick(snapshot.generation_tick) : timeline_texts.live;
+    const part = this.#dragged ?? this.#shown_part(scale);
+    this.#knob.style.left = percent(part);
+    this.#knob.hidden = part < 0 || part > 1;
+    this.#fill.style.width = percent(Math.min(Math.max(part, 0), 1));
+    const tick = world.is_replay ? texts.tick(snapshot.generation_tick) : texts.live;
+    this.#marks.refresh(scale, this.#width_px);
+    const {from, to} = scale.shown, there = this.#marks.texts_of(snapshot.generation);
+    const value = [
+      `${tick}, ${texts.generation(snapshot.generation)}`, ...there,
+      ...(this.is_zoomed ? [texts.zoomed(Math.floor(from), Math.ceil(to) - 1)] : [])
+    ];
     set_attribute(this.element, "aria-valuemin", String(scale.range.first_generation));
     set_attribute(this.element, "aria-valuemax", String(scale.range.last_generation));
     set_attribute(this.element, "aria-valuenow", String(snapshot.generation));
-    set_attribute(this.element, "aria-valuetext", `${tick}, ${timeline_texts.generation(snapshot.generation)}`);
-    this.#marks.refresh(scale, this.#width_px);
+    set_attribute(this.element, "aria-valuetext", value.join("; "));
+    set_attribute(this.element, "data-zoomed", this.is_zoomed ? "" : null);
     this.#show_bubble(scale);
   }
 
   #scale(): TimeScale|null {
     const {range} = this.#world.past;
-    return range && new TimeScale(range, (generation) => this.#world.past.ticks_of(generation));
+    return range &&
+      new TimeScale(range, (generation) => this.#world.past.ticks_of(generation), this.#zoom.shown(range));
+  }
+
+  /** The position of the shown moment, or of that to which a seek leads. */
+  #shown_part(scale: TimeScale): number {
+    const world = this.#world, {snapshot} = world, {last_generation, last_tick} = scale.range;
+    const shown = world.is_replay && snapshot ? scale.part_of(snapshot.generation, snapshot.tick) :
+                                                scale.part_of(last_generation + 1, last_tick);
+    return this.#place_of(scale, world.past.target) ?? shown;
   }
 
   /** The position of the moment that a seek leads to; null if the page does not know it. */
@@ -101,46 +151,26 @@ export class TimeSlider {
     return scale.part_of(target.generation, ticks && target.tick !== undefined ? ticks.first + target.tick : undefined);
   }
 
-  /** Says at the pointer which moment a click shows, and what happened there. */
+  /** Says at the pointer which moment a click shows, and what happened there; for keys, what happened at the knob. */
   #show_bubble(scale: TimeScale): void {
-    const at = this.#is_pressed ? this.#dragged : this.#hovered;
-    this.#bubble.hidden = at === null;
-    if (at === null) {
+    const is_chosen = this.#gestures.is_choosing, has_focus = this.element.matches(":focus-visible");
+    const pointed = is_chosen ? this.#dragged : this.#hovered,
+          at = pointed ?? (has_focus ? this.#shown_part(scale) : -1);
+    const near = mark_px / Math.max(this.#width_px, 1);
+    const {generation, tick} = scale.moment_at(at, this.#width_px);
+    const marks = pointed === null ? this.#marks.texts_of(generation) : this.#marks.texts_at(at, near);
+    this.#bubble.hidden = at < 0 || at > 1 || (pointed === null && marks.length === 0);
+    if (this.#bubble.hidden) {
       return;
     }
-    const {generation, tick} = scale.moment_at(at, this.#width_px);
-    const first = this.#world.past.ticks_of(generation)?.first,
-          texts = this.#marks.texts_at(at, mark_px / Math.max(this.#width_px, 1));
-    const place = timeline_texts.generation(generation) +
-      (tick !== undefined && first !== undefined ? `, ${timeline_texts.tick(tick - first)}` : "");
-    const further = texts.length - texts_max;
-    const lines =
-      [place, ...texts.slice(0, texts_max), ...(further > 0 ? [timeline_texts.further_marks(further)] : [])];
+    const first = this.#world.past.ticks_of(generation)?.first;
+    const place =
+      texts.generation(generation) + (tick !== undefined && first !== undefined ? `, ${texts.tick(tick - first)}` : "");
+    const further = marks.length - texts_max;
+    const lines = [place, ...marks.slice(0, texts_max), ...(further > 0 ? [texts.further_marks(further)] : [])];
     set_text(this.#bubble, lines.join("\n"));
     const half = this.#bubble.offsetWidth / 2, right = Math.max(this.#width_px - half, half);
     this.#bubble.style.left = `${Math.min(Math.max(at * this.#width_px, half), right)}px`;
-  }
-
-  #part_at(event: PointerEvent): number {
-    const {left, width} = this.element.getBoundingClientRect();
-    return Math.min(Math.max((event.clientX - left) / Math.max(width, 1), 0), 1);
-  }
-
-  #press(event: PointerEvent): void {
-    if (event.pointerType === "mouse" && event.button !== 0) {
-      return;
-    }
-    this.element.setPointerCapture(event.pointerId);
-    this.#is_pressed = true;
-    this.#drag_to(this.#part_at(event));
-  }
-
-  #move(event: PointerEvent): void {
-    if (this.#is_pressed) {
-      this.#drag_to(this.#part_at(event));
-    } else if (event.pointerType !== "touch") {
-      this.#hover(this.#part_at(event));
-    }
   }
 
   #drag_to(part: number): void {
@@ -151,13 +181,14 @@ export class TimeSlider {
     const scale = this.#scale();
     if (scale) {
       const {generation, tick} = scale.moment_at(part, this.#width_px);
-      this.#seeker.go(tick === undefined ? {generation} : {tick});
+      const first =
+        this.#world.past.ticks_of(generation)?.first; // a tick alone may be the end of the generation before
+      this.#seeker.go(tick === undefined || first === undefined ? {generation} : {generation, tick: tick - first});
     }
     this.refresh();
   }
 
   #release(): void {
-    this.#is_pressed = false;
     this.#hovered = null;
     if (!this.#seeker.is_seeking) {
       this.#dragged = null;
@@ -173,28 +204,60 @@ export class TimeSlider {
     }
   }
 
-  #key(event: KeyboardEvent): void {
-    const world = this.#world, seeker = this.#seeker, by = steps[event.key] ?? 0;
-    if (event.ctrlKey || event.altKey || event.metaKey) {
-      return;
+  #pan(parts: number): void {
+    const {range} = this.#world.past;
+    if (range) {
+      this.#zoom.pan(range, parts);
+      this.refresh();
     }
-    if (by !== 0) {
-      if (world.is_replay || by < 0) {
-        void seeker.attempt(
-          () => (event.shiftKey ? world.past.move_ticks(by * key_ticks) : world.past.move_generations(by)));
-      }
-    } else if (event.key === "PageUp" || event.key === "PageDown") {
-      void seeker.attempt(
-        () => world.past.move_generations(event.key === "PageUp" ? page_generations : -page_generations));
-    } else if (event.key === "Home") {
-      seeker.go_to_first();
-    } else if (event.key === "End") {
-      if (world.is_replay) {
-        seeker.go({});
-      }
-    } else {
+  }
+
+  /** Shows a generation by a key, and moves a zoomed line to it. */
+  #go_to(generation: number): void {
+    const {range} = this.#world.past;
+    if (range) {
+      this.#zoom.include(range, generation);
+      this.#seeker.go({generation});
+    }
+  }
+
+  #key(event: KeyboardEvent): void {
+    if (event.altKey || event.metaKey || !this.#key_acts(event)) {
       return;
     }
     event.preventDefault();
+  }
+
+  /** Returns whether the key has a meaning here. */
+  #key_acts({key, ctrlKey, shiftKey}: KeyboardEvent): boolean {
+    const world = this.#world, by = steps[key] ?? 0, {range} = world.past, page = key === "PageUp" ? 1 : -1;
+    if (ctrlKey) {
+      const marked = by === 0 ? null : this.#marks.next_generation(world.snapshot?.generation ?? 1, by);
+      if (marked !== null) {
+        this.#go_to(marked);
+      }
+      return by !== 0;
+    }
+    if (by !== 0 && shiftKey) {
+      if (world.is_replay || by < 0) {
+        void this.#seeker.attempt(() => world.past.move_ticks(by * key_ticks));
+      }
+    } else if (by !== 0 || key === "PageUp" || key === "PageDown") {
+      const from = world.past.target?.generation ?? world.snapshot?.generation, step = by || page * page_generations;
+      if (range && from !== undefined && (world.is_replay || step < 0)) {
+        this.#go_to(Math.min(Math.max(from + step, range.first_generation), range.last_generation));
+      }
+    } else if (zooms[key] !== undefined) {
+      this.zoom(zooms[key]!);
+    } else if (key === "0") {
+      this.show_all();
+    } else if (key === "Home") {
+      this.#seeker.go_to_first();
+    } else if (key !== "End") {
+      return false;
+    } else if (world.is_replay) {
+      this.#seeker.go({});
+    }
+    return true;
   }
 }

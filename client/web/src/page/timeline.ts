@@ -13,6 +13,8 @@ import {GenerationField} from "./generation_field";
 import {Seeker} from "./seeker";
 import {TimeSlider} from "./time_slider";
 
+const zoom_factor = 2;
+
 export interface TimelineContext {
   notify: Notify;
   attempt(what: () => Promise<unknown>): Promise<boolean>;
@@ -33,6 +35,7 @@ export class Timeline {
   readonly #next: HTMLButtonElement;
   readonly #last: HTMLButtonElement;
   readonly #live: HTMLButtonElement;
+  readonly #zoom: readonly HTMLButtonElement[]; // out, in, all
   readonly #buttons: HTMLElement;
   readonly #end: () => void;
 
@@ -53,6 +56,12 @@ export class Timeline {
     this.#next = button(texts.next, attempt(() => world.past.move_generations(1)), "square");
     this.#last = button(texts.last, () => seeker.go({}), "square time-end");
     this.#live = button(texts.live, attempt(() => world.past.back_to_live()), "time-live");
+    this.#zoom = [
+      button(texts.zoom_out, () => this.#slider.zoom(1 / zoom_factor), "square"),
+      button(texts.zoom_in, () => this.#slider.zoom(zoom_factor), "square"),
+      button(texts.show_all, () => this.#slider.show_all(), "time-all")
+    ];
+    this.#zoom.forEach((one) => one.addEventListener("click", () => this.#refresh()));
     const copy =
       h("button",
         {type: "button", class: "button time-copy", title: texts.copy.help, onclick: () => context.copy_link(world)},
@@ -62,6 +71,7 @@ export class Timeline {
         this.#field.element, this.#place);
     this.element = h(
       "div", {class: "timeline", role: "group", "aria-label": timeline_texts.name}, this.#buttons, this.#slider.element,
+      h("div", {class: "time-buttons time-zoom", role: "group", "aria-label": timeline_texts.zoom}, ...this.#zoom),
       this.#problem, h("div", {class: "time-buttons time-right"}, this.#live, copy), this.#field.wrong);
     this.#end = world.changes.listen(() => this.#refresh());
     this.#refresh();
@@ -105,6 +115,10 @@ export class Timeline {
     set_allowed(this.#previous, problem || (is_first ? timeline_texts.is_first : ""), texts.previous.help);
     set_allowed(this.#next, why || (is_last ? timeline_texts.is_last : ""), texts.next.help);
     set_allowed(this.#last, why, texts.last.help);
+    const [out, closer, all] = this.#zoom, is_whole = this.#slider.is_zoomed ? "" : texts.is_whole;
+    set_allowed(out!, is_whole, texts.zoom_out.help);
+    set_allowed(closer!, range ? "" : timeline_texts.no_world, texts.zoom_in.help);
+    set_allowed(all!, is_whole, texts.show_all.help);
     set_allowed(this.#live, world.past.is_own_replay ? "" : timeline_texts.is_live, texts.live.help);
   }
 }

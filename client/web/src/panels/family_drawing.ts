@@ -27,8 +27,8 @@ export class FamilyDrawing {
   /** The organism that the keyboard points at; null before the first scene. */
   at: Place|null = null;
 
-  readonly #base = h("canvas", {});
-  readonly #upper = h("canvas", {});
+  readonly #base = h("canvas", {"aria-hidden": "true"}); // the panel has a table of the same organisms
+  readonly #upper = h("canvas", {"aria-hidden": "true"});
   readonly #cursor =
     h("span", {class: "family-cursor"}); // at the organism that the keyboard points at, to scroll there
   readonly #actions: FamilyActions;

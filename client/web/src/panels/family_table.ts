@@ -37,7 +37,7 @@ export class FamilyTable {
       h("details", {ontoggle: () => this.#build()}, h("summary", {}, family_texts.table),
         h("div", {class: "row"}, this.#generation, this.#range, this.#previous, this.#next),
         h("div", {class: "glass-table", tabindex: 0, role: "group", "aria-label": family_texts.table},
-          h("table", {class: "table"},
+          h("table", {class: "table", "aria-label": family_texts.table},
             h("thead", {}, h("tr", {}, ...family_texts.table_columns.map((name) => h("th", {scope: "col"}, name)))),
             this.#body)));
   }

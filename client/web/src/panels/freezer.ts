@@ -62,7 +62,9 @@ export class FreezerPanel implements Panel {
     this.#entry = new FreezerEntry(context, this.#freezer, (name) => this.#choose(name));
     const [open, field] = open_button(texts.open_files, ".csv,text/csv", true, (files) => void this.#open(files));
     open.title = texts.open_files_help;
-    this.#table = h("table", {class: "table rows-table"}, table_head(texts.list_headings, Infinity), this.#rows);
+    this.#table =
+      h("table", {class: "table rows-table", "aria-label": texts.list}, table_head(texts.list_headings, Infinity),
+        this.#rows);
     this.element =
       h("div", {class: "panel panel-freezer"}, hint(texts.about),
         h("div", {class: "row", role: "group", "aria-label": texts.keep}, h("span", {}, texts.keep),

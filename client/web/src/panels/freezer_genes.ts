@@ -75,7 +75,7 @@ function table(population: Population, genes: readonly ComparedGene[], first: nu
     ];
   };
   return h(
-    "table", {class: "table"}, table_head(headings, 1),
+    "table", {class: "table", "aria-label": texts.gene_table}, table_head(headings, 1),
     h("tbody", {},
       ...genes.map(
         (gene, i) =>

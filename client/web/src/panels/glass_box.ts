@@ -12,6 +12,7 @@ import {BetControls} from "./glass_box_bets";
 import {HoldControl} from "./glass_box_hold";
 import {StepControls} from "./glass_box_steps";
 import {GlassBoxTabs} from "./glass_box_tabs";
+import {OriginNote} from "./origin_note";
 import {Width} from "./width";
 
 export class GlassBoxPanel implements Panel {
@@ -42,10 +43,7 @@ export class GlassBoxPanel implements Panel {
   readonly #follow: HTMLInputElement = h("input", {type: "checkbox", checked: true, onchange: () => this.refresh()});
   readonly #play_each: HTMLInputElement = h("input", {type: "checkbox"});
   readonly #birth = button(glass_box_texts.birth, () => this.#go_to_birth());
-  readonly #messages = new Messages(() => {
-    this.#feed.try_again();
-    this.refresh();
-  });
+  readonly #messages: Messages;
   readonly #body: HTMLElement;
   readonly #width: Width;
   readonly #context: PanelContext;
@@ -57,6 +55,11 @@ export class GlassBoxPanel implements Panel {
       begun: (at_end) => this.#begin(at_end),
       not_picked: (organism, generation) => context.notify(glass_box_texts.not_picked(organism, generation)),
     });
+    const try_again = (): void => {
+      this.#feed.try_again();
+      this.refresh();
+    };
+    this.#messages = new Messages(context, try_again, (generation) => this.show({generation}));
     this.#hold = new HoldControl(context, () => this.refresh());
     const check = (input: HTMLInputElement, text: string, help: string): HTMLElement =>
       h("label", {class: "check", title: help}, input, text);
@@ -154,14 +157,19 @@ class Messages {
   readonly #retry: HTMLButtonElement;
   readonly #waiting = h("p", {});
 
-  constructor(try_again: () => void) {
+  readonly #origin: OriginNote;
+
+  constructor(context: PanelContext, try_again: () => void, on_open: (generation: number) => void) {
+    this.#origin = new OriginNote(context, on_open);
     this.#retry = button(glass_box_texts.retry, try_again);
-    this.element = h("div", {class: "panel"}, this.#summary, this.#error, this.#retry, this.#waiting);
+    this.element =
+      h("div", {class: "panel"}, this.#summary, this.#error, this.#origin.element, this.#retry, this.#waiting);
   }
 
-  show(world: ViewedWorld, {shown, problem, last}: BreedingFeed): void {
-    set_text(this.#error, problem ? glass_box_texts.problem(problem) : "");
-    this.#retry.hidden = problem === "";
+  show(world: ViewedWorld, {shown, problem, last, origin_run, chosen}: BreedingFeed): void {
+    set_text(this.#error, problem && origin_run === "" ? glass_box_texts.problem(problem) : "");
+    this.#retry.hidden = problem === "" || origin_run !== "";
+    this.#origin.update(origin_run, chosen);
     set_text(
       this.#summary, shown ? glass_box_texts.summary(world.name, shown.key.generation, breeding_summary(shown)) : "");
     set_text(

@@ -428,7 +428,7 @@ export function draw_family(descendant: Descendant, gene_names: readonly string[
   return h(
     "div", {class: "panel"},
     h("div", {class: "family-scroll"},
-      h("table", {class: "family-table"},
+      h("table", {class: "family-table", "aria-label": glass_box_texts.gene_table},
         h("thead", {},
           h("tr", {}, h("td", {}), ...genes.map((gene) => h("th", {scope: "col"}, gene_label(names[gene]!))))),
         h("tbody", {}, ...rows))),

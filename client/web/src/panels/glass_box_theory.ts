@@ -64,7 +64,8 @@ function organism_table(comparison: Comparison, copies: readonly number[], compl
   return h(
     "details", {}, h("summary", {}, glass_box_texts.table),
     h("div", {class: "glass-table"},
-      h("table", {class: "table"}, h("thead", {}, h("tr", {}, ...heads)), h("tbody", {}, ...rows))),
+      h("table", {class: "table", "aria-label": glass_box_texts.table}, h("thead", {}, h("tr", {}, ...heads)),
+        h("tbody", {}, ...rows))),
     comparison.organisms.length > table_rows_max &&
       hint(glass_box_texts.table_limited(table_rows_max, comparison.organisms.length)));
 }

@@ -24,7 +24,8 @@ export class IslandsTable {
   constructor(context: PanelContext, on_answer: () => void) {
     this.#context = context;
     this.#on_answer = on_answer;
-    const table = h("table", {class: "table"}, table_head(texts.island_headings, 1), this.#rows);
+    const table =
+      h("table", {class: "table", "aria-label": texts.island_table}, table_head(texts.island_headings, 1), this.#rows);
     this.element = h("div", {class: "panel"}, this.#title, table);
   }
 

@@ -77,7 +77,10 @@ class NewWorldDialog {
     {class: "field", rows: 8, spellcheck: "false", "aria-label": texts.text_label, oninput: () => this.#choose_none()});
   #beside = h("input", {type: "checkbox"});
   #error = h("p", {class: "error grow", role: "alert"});
-  #create = h("button", {type: "submit", class: "button button-primary"}, texts.create);
+  #create = h("button", {type: "submit", class: "button"}, texts.create);
+  #create_and_run =
+    h("button", {type: "button", class: "button button-primary", onclick: () => void this.#send(true)},
+      texts.create_and_run);
   #same_label = h("span", {});
   #same: HTMLInputElement;
   #name_edited = false;
@@ -125,7 +128,7 @@ class NewWorldDialog {
       open_button(texts.open_file, ".json,application/json,text/plain", false, (files) => void this.#read(files[0]));
     const submit = (event: Event): void => {
       event.preventDefault();
-      void this.#send();
+      void this.#send(false);
     };
     return h(
       "form", {class: "panel", onsubmit: submit}, this.#choices,
@@ -135,7 +138,7 @@ class NewWorldDialog {
       h("details", {}, h("summary", {}, texts.text), hint(texts.text_help), this.#text, row(open, field)),
       check(this.#beside, texts.beside),
       h("div", {class: "row dialog-end"}, this.#error, button(common_texts.cancel, () => this.#dialog.close()),
-        this.#create));
+        this.#create, this.#create_and_run));
   }
 
   #choice(label: HTMLElement, description: string, checked: boolean, act: () => void): HTMLElement {
@@ -222,7 +225,7 @@ class NewWorldDialog {
 
   // ---- creation ----
 
-  async #send(): Promise<void> {
+  async #send(runs: boolean): Promise<void> {
     const name = this.#name.value.trim(), seed = this.#seed.value.trim();
     const seed_wrong = seed !== "" && !(/^\d{1,20}$/.test(seed) && BigInt(seed) <= seed_max);
     const problem = name_problem("name", name) || (seed_wrong ? common_texts.wrong_seed(seed, seed_max) : "");
@@ -232,7 +235,7 @@ class NewWorldDialog {
     if (problem) {
       return;
     }
-    this.#create.disabled = true;
+    this.#create.disabled = this.#create_and_run.disabled = true;
     try {
       const population = await this.#population_fields();
       if (typeof population === "string") {
@@ -248,10 +251,13 @@ class NewWorldDialog {
       } else {
         this.#context.world().show(name);
       }
+      if (runs) {
+        await this.#context.attempt(() => this.#context.server.request("run", {world: name}));
+      }
     } catch (error) {
       set_text(this.#error, (error as Error).message);
     } finally {
-      this.#create.disabled = false;
+      this.#create.disabled = this.#create_and_run.disabled = false;
     }
   }
 }

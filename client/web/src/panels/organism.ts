@@ -6,6 +6,7 @@ import type {OrganismPlace} from "../organism/history";
 import {organism_texts as texts} from "../texts/organism";
 import {h} from "../widgets/dom";
 import type {Panel, PanelContext} from "../world/panel_context";
+import {origin_run_of} from "../world/origin";
 import type {ViewedWorld} from "../world/world";
 import {BrainView} from "./brain_view";
 import {OrganismGenes} from "./organism_genes";
@@ -37,6 +38,7 @@ export class OrganismPanel implements Panel {
   #pending = false; // a GetBreeding is on its way
   #retry_at_ms = 0;
   #problem = ""; // why the picks are unknown
+  #origin_run = ""; // id of the run in which the parents bred, if the shown world is a fork of it
   #drawn: unknown[] = [];
 
   constructor(context: PanelContext) {
@@ -55,10 +57,11 @@ export class OrganismPanel implements Panel {
       has_bred: () => this.#history !== null && has_bred(context.world(), this.#history),
       is_loading: () => this.#pending,
       problem: () => this.#problem,
+      origin_run: () => this.#origin_run,
       go_to: (generation, island, organism) => this.#go_to(generation, island, organism),
       open_picks: (generation, island, organism) => context.open("glass box", {generation, island, organism}),
     };
-    this.#origin = new OrganismOrigin(breeding);
+    this.#origin = new OrganismOrigin(context, breeding);
     this.#offspring = new OrganismOffspring(breeding);
     this.#details =
       h("div", {class: "panel"}, ...this.#life.elements, this.#origin.element, this.#health.element, this.#brain_part,
@@ -143,7 +146,7 @@ export class OrganismPanel implements Panel {
     this.#release_population?.();
     this.#release_population = null;
     this.#history = null;
-    this.#problem = "";
+    this.#problem = this.#origin_run = "";
     this.#retry_at_ms = 0;
   }
 
@@ -169,7 +172,10 @@ export class OrganismPanel implements Panel {
         },
         (error: Error) => {
           if (history === this.#history) {
-            this.#problem = error.message;
+            const origin_run = origin_run_of(error);
+            history.parents_bred_elsewhere ||= origin_run !== "";
+            this.#origin_run ||= origin_run;
+            this.#problem = origin_run === "" ? error.message : "";
           }
           this.#retry_at_ms = performance.now() + retry_after_ms;
         })

@@ -5,6 +5,8 @@ import {child_text, parents_text, picks_text} from "../organism/texts";
 import {organism_texts as texts} from "../texts/organism";
 import {h, set_text} from "../widgets/dom";
 import {button, row} from "../widgets/form";
+import type {PanelContext} from "../world/panel_context";
+import {OriginNote} from "./origin_note";
 
 const children_shown_max = 40;
 
@@ -13,6 +15,7 @@ export interface OriginContext {
   has_bred(): boolean; // whether the generation of the organism has bred
   is_loading(): boolean;
   problem(): string; // why the picks are unknown
+  origin_run(): string; // id of the run in which the parents bred, if the world is a fork of it
   go_to(generation: number, island: number, organism: number): void;
   open_picks(generation: number, island: number, organism: number): void; // in the glass box
 }
@@ -24,14 +27,17 @@ export class OrganismOrigin {
   readonly #own_picks = h("p", {});
   readonly #show_picks = button(texts.show_picks, () => this.#open_own_picks());
   readonly #problem = h("p", {class: "error", role: "status"});
-  readonly element =
-    h("section", {class: "panel organism-part"}, h("h3", {}, texts.why), this.#parent_rows, this.#parents,
-      this.#own_picks, row(this.#show_picks), this.#problem);
+  readonly #note: OriginNote;
+  readonly element: HTMLElement;
   #history: OrganismHistory|null = null;
   #built = ""; // the parents in the rows, and what is known about them
 
-  constructor(context: OriginContext) {
+  constructor(panel: PanelContext, context: OriginContext) {
     this.#context = context;
+    this.#note = new OriginNote(panel, () => undefined);
+    this.element =
+      h("section", {class: "panel organism-part"}, h("h3", {}, texts.why), this.#parent_rows, this.#parents,
+        this.#own_picks, row(this.#show_picks), this.#problem, this.#note.element);
   }
 
   update(history: OrganismHistory): void {
@@ -55,7 +61,9 @@ export class OrganismOrigin {
       !this.#context.has_bred()    ? texts.not_bred :
       this.#context.is_loading()   ? texts.loading :
                                      texts.no_picks;
+    const origin_run = this.#context.origin_run();
     set_text(this.#problem, problem ? texts.picks_problem(problem) : "");
+    this.#note.update(origin_run, place.generation - 1, parents[0] ?? null);
   }
 
   #parent_row(history: OrganismHistory, parent: number): HTMLElement {

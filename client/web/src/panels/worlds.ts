@@ -49,7 +49,8 @@ export class WorldsPanel implements Panel {
       () => void this.#do_fork(), () => this.#fork);
     this.#islands = new IslandsTable(context, () => this.element.hidden || this.refresh());
     this.element =
-      h("div", {class: "panel panel-worlds"}, h("table", {class: "table"}, table_head(texts.headings, 2), this.#worlds),
+      h("div", {class: "panel panel-worlds"},
+        h("table", {class: "table", "aria-label": texts.table}, table_head(texts.headings, 2), this.#worlds),
         h("div", {class: "row"}, this.#create, this.#fork, this.#remove), this.#why, this.#confirm.element,
         this.#fork_form.element, this.#islands.element);
   }

@@ -11,7 +11,16 @@ import {Cells, GlShapes, Projection, Table} from "./gl_shapes";
 import type {GlText} from "./gl_text";
 import {KeptBoxes, Points, with_room} from "./interpolator";
 import {Colour, ScaleTable, ShapeStyle} from "./look";
-import {is_kept, item_dots_max, outline_zoom_min, too_small_to_see, typical_radius_px} from "./marks";
+import {
+  few_organisms,
+  heading_zoom_min,
+  is_kept,
+  item_dots_max,
+  outline_zoom_min,
+  seen_pixels_min,
+  too_small_to_see,
+  typical_radius_px
+} from "./marks";
 import {inside_walls, Painter, Scene} from "./scene";
 
 const margin_shadow_pixels = 6;
@@ -285,21 +294,25 @@ export class GlIsland implements Painter {
   #draw_organisms(scene: Scene, projection: Projection): void {
     const {styles, camera, blend} = scene, {ratio} = scene.place;
     const coloured = scene.organism_colours !== null;
-    const {table, count} = this.#tables.organisms;
+    const {table, count} = this.#tables.organisms, {has_headings} = scene.at.latest;
     this.#shapes.draw(table, count, coloured ? styles.coloured : styles.organism, projection, {
       moving: true,
       blend,
       coloured,
       health_share: 1 / (steps_per_px * scene.health_max),
       edge_pixels: coloured && camera.zoom < outline_zoom_min ? 0 : undefined,
+      half_pixels_min: has_headings || count <= few_organisms ? seen_pixels_min : undefined,
       half_max: this.#radius_max * projection.zoom,
       as_points: this.#is_island_in_sight(scene),
     });
-    const radius_pixels = typical_radius_px * camera.zoom;
-    if (scene.at.latest.has_headings && radius_pixels >= 2) {
-      const heading_beyond =
-        Math.min(styles.heading_pixels, radius_pixels + 4) * ratio; // lines of small organisms are shorter
-      this.#shapes.draw(table, count, styles.heading, projection, {moving: true, blend, heading_beyond});
+    const radius_pixels = Math.max(typical_radius_px * camera.zoom, seen_pixels_min);
+    if (has_headings && camera.zoom >= heading_zoom_min) { // lines of small organisms are shorter and thinner
+      this.#shapes.draw(table, count, styles.heading, projection, {
+        moving: true,
+        blend,
+        heading_beyond: Math.min(styles.heading_pixels, 1.5 * radius_pixels - 1) * ratio,
+        line_pixels: Math.min(styles.heading.line_pixels, radius_pixels / 4),
+      });
     }
   }
 

@@ -152,6 +152,8 @@ export interface DrawOptions {
   health_share?: number;
   fill?: Colour; // instead of the one of the style
   edge_pixels?: number; // instead of those of the style
+  half_pixels_min?: number; // instead of those of the style
+  line_pixels?: number; // instead of those of the style
   half_max?: number; // of the largest shape, in device pixels; absent: unknown
   as_points?: boolean; // if all shapes are small enough
 }
@@ -267,7 +269,8 @@ export class GlShapes {
     }
     const gl = this.gl, ratio = this.#ratio;
     const edge_pixels = (options.edge_pixels ?? style.edge_pixels) * ratio;
-    const half_max = Math.max(options.half_max ?? Infinity, style.half_pixels_min * ratio);
+    const half_pixels_min = (options.half_pixels_min ?? style.half_pixels_min) * ratio;
+    const half_max = Math.max(options.half_max ?? Infinity, half_pixels_min);
     const has_tips = style.form === "leaf" || style.form === "star";
     const bare =
       style.form === "body" && (edge_pixels === 0 || half_max < 0.8 * edge_pixels); // as in the vertex shader
@@ -298,8 +301,8 @@ export class GlShapes {
     gl.uniform1f(uniforms.health_share!, options.health_share ?? 0);
     gl.uniform1f(uniforms.item_half!, options.item_half ?? 0);
     gl.uniform1f(uniforms.heading_beyond!, options.heading_beyond ?? 0);
-    gl.uniform1f(uniforms.half_pixels_min!, style.half_pixels_min * ratio);
-    gl.uniform1f(uniforms.line_pixels!, style.line_pixels * ratio);
+    gl.uniform1f(uniforms.half_pixels_min!, half_pixels_min);
+    gl.uniform1f(uniforms.line_pixels!, (options.line_pixels ?? style.line_pixels) * ratio);
     gl.uniform1f(uniforms.edge_pixels!, edge_pixels);
     this.#set_colour(uniforms.fill!, options.fill ?? style.fill);
     this.#set_colour(uniforms.fill_low!, style.fill_low);

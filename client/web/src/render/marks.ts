@@ -6,6 +6,9 @@ import {Rectangle, Size, visible_part} from "./camera";
 
 /** Radius of a typical organism. If it is below one pixel on the screen, organisms are too small to see one by one. */
 export const typical_radius_px = 10;
+export const seen_pixels_min = 3; // radius of an organism with a heading, or of one among few, so that its body is seen
+export const few_organisms = 300;
+export const heading_zoom_min = 0.1; // at a smaller zoom, headings are not drawn
 /** While organisms are too small to see, at most about this many dots of food are drawn, and of poison. */
 export const item_dots_max = 10_000;
 /** Trails and flashes are shown if a snapshot contains fewer organisms than this. On an island that is sent whole,

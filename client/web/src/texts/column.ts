@@ -3,6 +3,7 @@
 export const column_texts = {
   name: "Controls and panels",
   panels: "Panels",
+  overview: "Overview",
   key: (number: number) => `Key ${number}`,
   world: "World",
   island: "Island",
@@ -21,8 +22,8 @@ export const column_texts = {
   take_part: "Take part",
   no_connection: "There is no connection.",
   is_viewer: "You are a viewer: read-only.",
-  takes_part: "Your changes act for everyone.",
-  watches: "You only watch until you turn it on.",
+  takes_part: "Changes act for everyone.",
+  watches: "You only watch.",
   session: "The user and the role of this session",
 };
 

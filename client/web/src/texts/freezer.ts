@@ -32,6 +32,7 @@ export const freezer_texts = {
   busy: "Reading …",
 
   // ---- the list ----
+  list: "Kept organisms and populations",
   list_headings: ["Name", "Content", "From"],
   nothing: "Nothing is kept yet.",
   content: (count: number, islands: number, genes: number) =>
@@ -64,7 +65,7 @@ export const freezer_texts = {
   create_help: "Creates a world whose first generation is this population.",
   create_copies_help: "Creates a world whose first organisms are copies of this one.",
   download: "Download",
-  download_help: (file: string) => `Saves ${file}, which evod, evoctl and evoview can open.`,
+  download_help: (file: string) => `Saves ${file}, which evod and evoctl can open.`,
   rename: "Rename …",
   new_name: "New name",
   do_rename: "Rename",
@@ -78,6 +79,7 @@ export const freezer_texts = {
   a_copy_of: (name: string) => `a copy of ${name}`,
 
   // ---- the comparison ----
+  gene_table: "Genes of the kept organism",
   gene_headings: ["Gene", "Kept"],
   difference: "Difference",
   range_heading: "Lowest…highest",

@@ -93,6 +93,7 @@ export const glass_box_texts = {
   standard_errors: (off: number): string => `${off_text(off)} standard errors`,
   source: (sentence: string, source: string): string => `${sentence} (${source})`,
   table: "All organisms as a table",
+  gene_table: "Genes of the parents and of the descendant",
   table_columns: ["rank", "organism", "fitness", "expected", "picks", "off"],
   table_expected: (expected: number, error: number): string => `${three_digits(expected)} ± ${three_digits(error)}`,
   table_off: off_text,

@@ -21,6 +21,7 @@ export const new_world_texts = {
   open_file: "Open a file …",
   beside: "show it beside this world",
   create: "Create",
+  create_and_run: "Create and run",
   unequal_islands: (first: number, other: number) => `first population: got islands of ${with_separators(first)} and ${
     with_separators(other)} organisms, allowed the same number on each island`,
 };

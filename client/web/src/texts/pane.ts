@@ -8,6 +8,7 @@ function organisms(count: number): string {
 
 export const pane_texts = {
   kind: "island",
+  shown: "Shown worlds",
   no_webgl: "This browser cannot draw the island, because it has no WebGL 2, or WebGL 2 is switched off. " +
     "The panels show the world as usual.",
   no_world: "No world is shown",
@@ -25,7 +26,7 @@ export const pane_texts = {
   end_of_replay: "end of the replay",
   slower: " slower",
   close: "Close this world",
-  beside: "Show a second world next to this one (B)",
+  beside: "Choose a second world to show next to this one (B)",
 };
 
 /** How much room a tile has for its label. */

@@ -17,6 +17,12 @@ export const timeline_texts = {
   is_last: "This is the last generation.",
   is_end: "This is the end of the replay.",
   extinction: (generation: number) => `generation ${with_separators(generation)}: all organisms died before its end`,
+  forked: (world: string) => `The world ${world} was forked from here.`,
+  mark_labels: {extinction: "extinct", placed: "placed", removed: "removed", migration: "migration", fork: "fork"},
+  several: (label: string, further: number) => `${label} +${further}`,
+  zoomed: (first: number, last: number) =>
+    `the line shows the generations ${with_separators(first)} to ${with_separators(last)}`,
+  zoom: "Zoom of the time line",
   further_marks: (count: number) => `and ${count} more`,
 };
 
@@ -28,6 +34,10 @@ export const timeline_buttons = {
   next: {label: ">", name: "Next generation", help: "Goes to the next generation (])."},
   last: {label: ">|", name: "Last tick", help: "Goes to the last tick."},
   live: {label: "Live", help: "Returns to the live world (P)."},
+  zoom_in: {label: "+", name: "Zoom in", help: "Shows fewer generations on the line (wheel, + on the line)."},
+  zoom_out: {label: "−", name: "Zoom out", help: "Shows more generations on the line (wheel, − on the line)."},
+  show_all: {label: "All", name: "Show all generations", help: "Shows the whole run on the line (0 on the line)."},
+  is_whole: "The line shows the whole run.",
   copy: {label: "Copy link", help: "Copies a link that shows this moment in a browser (Ctrl+C)."},
 };
 

@@ -1,5 +1,5 @@
 // What people read about undoing and redoing.
-import {with_separators} from "./numbers";
+import {capitalised, with_separators} from "./numbers";
 
 const counted = (count: number, one: string, many: string): string[] =>
   count === 0 ? [] : [`${with_separators(count)} ${count === 1 ? one : many}`];
@@ -12,6 +12,8 @@ export const undo_texts = {
   redo_help: (name: string) => name === "" ? "There is nothing to redo." : `Does again: ${name} (Ctrl+Shift+Z).`,
   nothing_to_undo: "There is nothing to undo.",
   nothing_to_redo: "There is nothing to redo.",
+  done: (name: string) => `${capitalised(name)}.`,
+  not_last: (name: string) => `“${name}” is no longer the last change; Ctrl+Z undoes the changes one by one.`,
   busy: "The last change is still being undone or redone.",
   undone: (name: string) => `Undone: ${name}.`,
   redone: (name: string) => `Done again: ${name}.`,

@@ -3,6 +3,7 @@ import {with_separators} from "./numbers";
 
 export const worlds_texts = {
   title: "Worlds",
+  table: "Worlds of the server",
   headings: ["World", "State", "Generation", "Tick", "Speed"],
   damaged: "damaged",
   slower: (speed: string) => `${speed} (slower)`,
@@ -21,6 +22,7 @@ export const worlds_texts = {
   do_fork: "Fork",
   islands: (world: string) => `Islands of ${world}`,
   islands_of_replay: (world: string) => `Islands of the replay of ${world}`,
+  island_table: "Islands of the world",
   island_headings: ["Island", "Alive", "Mean health", "Last best fitness"],
   island: (number: number) => `island ${number}`,
   alive: (alive: number, all: number) => `${with_separators(alive)} of ${with_separators(all)}`,

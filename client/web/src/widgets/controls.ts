@@ -26,8 +26,7 @@ export function set_value(control: HTMLInputElement|HTMLSelectElement, value: st
 }
 
 /** A button that calls `act`, or shows its reason by `notify` while set_allowed() has disabled it. */
-export function guarded_button(
-  label: string, notify: Notify, act: () => void, classes = "button"): HTMLButtonElement {
+export function guarded_button(label: string, notify: Notify, act: () => void, classes = "button"): HTMLButtonElement {
   const is_disabled = (): boolean => button.getAttribute("aria-disabled") === "true";
   const button =
     h("button", {

@@ -6,10 +6,17 @@ import {h, set_text} from "./dom";
 
 const shown_ms = 6000, notices_max = 3;
 
+/** A button of a notice or of a banner. */
+export interface Action {
+  label: string;
+  act: () => void;
+}
+
 /** Shows a message.
  *
- *  holds  whether what the message states is still true; absent: the message reports something that has happened */
-export type Notify = (text: string, holds?: () => boolean) => void;
+ *  holds   whether what the message states is still true; absent: the message reports something that has happened
+ *  action  a button of the message */
+export type Notify = (text: string, holds?: () => boolean, action?: Action) => void;
 
 export class Notices {
   readonly element = h("div", {class: "notices", role: "status", "aria-live": "polite"});
@@ -26,13 +33,20 @@ export class Notices {
   }
 
   /** Shows a message; see Notify. The same message is not shown twice at a time. */
-  show(text: string, holds?: () => boolean): void {
+  show(text: string, holds?: () => boolean, action?: Action): void {
     for (const notice of [...this.element.children]) {
       if (notice.firstChild?.textContent === text) {
         notice.remove();
       }
     }
     const notice = h("div", {class: "notice"}, h("span", {}, text));
+    if (action !== undefined) {
+      const act = (): void => {
+        notice.remove();
+        action.act();
+      };
+      notice.append(h("button", {type: "button", class: "button", onclick: act}, action.label));
+    }
     notice.append(
       h("button", {
         type: "button",
@@ -59,9 +73,10 @@ export class Notices {
 
 export interface Banner {
   name: string; // "lost"
-  kind: "bad"|"warn";
+  kind: "bad"|"warn"|"info";
   text: string;
-  actions?: {label: string; act: () => void}[];
+  progress?: {value: number; max: number};
+  actions?: Action[];
 }
 
 export class Banners {
@@ -80,13 +95,17 @@ export class Banners {
       let element = this.#shown.get(banner.name);
       if (!element) {
         element =
-          h("div", {class: "banner", "data-kind": banner.kind}, h("span", {}),
+          h("div", {class: "banner", "data-kind": banner.kind}, h("span", {}), banner.progress && h("progress", {}),
             ...(banner.actions ?? [])
               .map(({label, act}) => h("button", {type: "button", class: "button", onclick: act}, label)));
         this.#shown.set(banner.name, element);
         this.element.append(element);
       }
       set_text(element.firstElementChild!, banner.text);
+      const progress = element.querySelector("progress");
+      if (progress && banner.progress) {
+        Object.assign(progress, banner.progress);
+      }
     }
   }
 }

@@ -13,6 +13,8 @@ export interface PanelContext {
   readonly server: Server;
   /** The world of the pane with the focus. */
   world(): ViewedWorld;
+  /** The world of the other pane if two are shown side by side. */
+  other(): ViewedWorld|null;
   /** Shows a second world beside the first, and focuses it. */
   show_beside(world: string, island?: number): void;
   /** Creates a world that starts from the shown moment, and shows it beside its origin. */
@@ -23,8 +25,8 @@ export interface PanelContext {
    *  if it cannot, and a message says why. */
   place_by_clicks(model: PlacedModel): (() => boolean)|null;
   /** Shows a short message at the bottom, read by screen readers. It disappears after some seconds, and when `holds`
-   *  returns false: what it states is not true any more. */
-  notify(text: string, holds?: () => boolean): void;
+   *  returns false: what it states is not true any more. action: a button of the message. */
+  notify(text: string, holds?: () => boolean, action?: {label: string; act: () => void}): void;
   /** Runs a request, and shows the sentence of a refusal. Returns whether it succeeded. */
   attempt(what: () => Promise<unknown>): Promise<boolean>;
 }

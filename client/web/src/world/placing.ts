@@ -50,10 +50,9 @@ export class Placing {
     if (this.#placed.length === 0) {
       return;
     }
-    const world = this.#world, is_same_run = (): boolean =>
-      world.shown === this.#shown && world.info?.run_id === this.#run_id;
-    const count = (kind: Kind): number =>
-      this.#placed.reduce((sum, {answer}) => sum + (answer[kind]?.length ?? 0), 0);
+    const world = this.#world,
+          is_same_run = (): boolean => world.shown === this.#shown && world.info?.run_id === this.#run_id;
+    const count = (kind: Kind): number => this.#placed.reduce((sum, {answer}) => sum + (answer[kind]?.length ?? 0), 0);
     world.undo.add({
       name: undo_texts.placed(count("food"), count("poison"), count("organisms")),
       // Everything that was placed ends with its generation.
@@ -72,8 +71,8 @@ export class Placing {
    *  refused as a whole. */
   async #remove_what_is_left(): Promise<boolean> {
     const removals = this.#placed.flatMap(
-      ({answer}) => kinds.flatMap(
-        (kind) => (answer[kind] ?? []).map((id) => ({generation: answer.generation, [kind]: [id]}))));
+      ({answer}) =>
+        kinds.flatMap((kind) => (answer[kind] ?? []).map((id) => ({generation: answer.generation, [kind]: [id]}))));
     const results = await Promise.allSettled(removals.map(
       (removal) => this.#world.server.request("remove", {world: this.#shown, island: this.#island, ...removal})));
     for (const result of results) {

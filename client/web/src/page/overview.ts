@@ -1,0 +1,57 @@
+// Overview: how the shown world does: its healthiest organisms and its live fitness curve. Tall windows show it above
+// the run controls, low and narrow ones as the first panel of the column.
+import {FitnessCurve} from "../plots/fitness_curve";
+import {column_texts as texts} from "../texts/column";
+import {set_attribute} from "../widgets/controls";
+import {h, set_text} from "../widgets/dom";
+import type {Panel, PanelContext} from "../world/panel_context";
+
+const named = 3; // healthiest organisms
+
+export class Overview implements Panel {
+  readonly name = "overview";
+  readonly title = texts.overview;
+  readonly element: HTMLElement;
+  readonly #context: PanelContext;
+  readonly #healthiest = h("span", {});
+  readonly #buttons: readonly HTMLButtonElement[]; // of the healthiest organisms
+  readonly #curve: FitnessCurve;
+
+  /** evolution: the button that shows it. */
+  constructor(context: PanelContext, evolution: HTMLElement) {
+    this.#context = context;
+    const height = matchMedia("(max-width: 700px)").matches ? 64 : matchMedia("(max-width: 1000px)").matches ? 84 : 132;
+    this.#curve =
+      new FitnessCurve((generation) => void context.attempt(() => context.world().past.show(generation)), height);
+    this.#buttons = Array.from(
+      {length: named},
+      (_, i) => h("button", {type: "button", class: "link", onclick: () => this.#select_healthiest(i)}));
+    this.element =
+      h("div", {class: "overview"}, h("p", {class: "healthiest"}, this.#healthiest, ...this.#buttons), evolution,
+        h("div", {class: "curve"}, this.#curve.element));
+  }
+
+  refresh(): void {
+    const world = this.#context.world(), {feed: {healthiest}, selection: {id: selected}, snapshot} = world;
+    this.#buttons.forEach((button, i) => {
+      const organism = healthiest[i];
+      button.hidden = !organism;
+      set_text(button, organism ? texts.organism(organism.id, organism.health) : "");
+      set_attribute(button, "aria-pressed", String(organism !== undefined && organism.id === selected));
+    });
+    set_text(
+      this.#healthiest,
+      healthiest.length > 0                   ? texts.healthiest :
+        !snapshot                             ? "" :
+        (snapshot.live?.alive_count ?? 0) > 0 ? texts.zoom_in :
+                                                texts.none_alive);
+    this.#curve.update(world);
+  }
+
+  #select_healthiest(i: number): void {
+    const world = this.#context.world(), organism = world.feed.healthiest[i];
+    if (organism) {
+      world.selection.select(organism.id);
+    }
+  }
+}
