@@ -49,7 +49,7 @@ class Page(Case):
         wrong = [text for level, text in browser.log() if level == "SEVERE" or "Content Security" in text]
         self.assertEqual([text for text in wrong if f":{server.http_port}/" in text], [])
 
-    def test_without_webgl_2_the_page_says_so_and_its_panels_work(self):
+    def test_without_webgl_2_the_page_says_so(self):
         server, browser = self.start(), self.browser
         control = self.client(server)
         script = browser.cdp("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_WEBGL_2)
