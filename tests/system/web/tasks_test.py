@@ -146,12 +146,13 @@ class Tasks(Case):
         self.press(f"Why {child.parents[0]}?", "[data-panel=organism]")
         self.browser.wait_for_text(f"in the slot of organism {child.parents[0]}", "[data-panel='glass box']")
 
-    def test_create_a_world_from_an_experiment(self):
+    def test_create_a_world_and_run_it(self):
         self.press("New …")
         self.act(self.browser.click, self.browser.wait("""[...document.querySelectorAll("dialog[open] label")]
             .find((e) => e.checkVisibility() && e.innerText.startsWith("brains"))""", "the experiment brains"))
-        self.press("Create")
+        self.press("Create and run")
         self.control.wait_world(lambda world: len(self.worlds()) == 2, "default")
+        self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, *(self.worlds() - {"default"}))
 
     def test_fork_now(self):
         self.press("Fork")
