@@ -23,8 +23,8 @@ Refusal not_found_refusal(const char* field, std::uint64_t first, std::uint64_t 
             .reason = base::Reason::MomentNotFound};
 }
 
-/// Refuses a generation that bred in the run of which this one is a fork. A violation names the ids of both runs, so that
-/// a client can find the world that has the origin.
+/// Refuses a generation that bred in the run of which this one is a fork. A violation names the ids of both runs, so
+/// that a client can find the world that has the origin.
 Refusal bred_in_origin(const run_file::RunIdentity& identity, std::uint64_t generation, RefusalCode code,
                        base::Reason reason) {
     const std::string origin = to_text(*identity.forked_from);

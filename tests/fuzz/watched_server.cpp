@@ -187,7 +187,7 @@ void WatchedServer::watch_mail() {
                 continue;
             }
             mailbox_.push(runtime::Ping{});
-        } else if (std::holds_alternative<runtime::WorldBrought>(mail)) {
+        } else if (std::holds_alternative<runtime::ForkWorldComputed>(mail)) {
             mailbox_.push(runtime::Ping{}); // the end of a command, too
         }
         mailbox_.push(std::move(mail));

@@ -7,6 +7,7 @@ import tempfile
 import threading
 import unittest
 from signal import SIGINT
+from unittest import mock
 
 import numpy
 
@@ -72,6 +73,11 @@ class Commands(unittest.TestCase):
         with self.assertRaisesRegex(AttributeError, "did you mean mutation_chance"):
             world.parameters.mutation_chanc
         self.assertIn("Organisms on each island.", world.parameters._repr_html_())
+        with mock.patch.object(world, "get_parameters", wraps=world.get_parameters) as read:
+            self.assertEqual(dict(world.parameters), dict(world.get_parameters()))
+            self.assertEqual([(name, parameter.name) for name, parameter in world.parameters.items()],
+                             [(name, name) for name in registry])
+        self.assertEqual(read.call_count, 3)
         world.delete()
 
     def test_values_out_of_range_are_refused_before_sending(self):

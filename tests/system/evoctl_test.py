@@ -279,7 +279,8 @@ class Commands(WithServer):
             "brains": ["each steered by an evolving neural network", "Only the fittest have offspring."],
             "classic": ["20 organisms", "always flee from poison", "orbit their food", "Survivors mutate, too."],
             "default": ["50 organisms seek food (+25 health) and avoid poison (−40)."],
-            "islands": ["On each of 8 islands: 50 organisms", "Every 10 generations, each island sends a copy of its best "
+            "islands": ["On each of 8 islands: 50 organisms",
+                        "Every 10 generations, each island sends a copy of its best "
                         "organism to the next island."],
             "rooy": ["each steered by an evolving neural network", "They lose no health", "Fitness is the food eaten"],
             "trade_offs": ["more or less with its genes"],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Iterator, Mapping, Protocol
 
 from evod.errors import Error
-from evod.parameters import Parameters, Registry, Value
+from evod.parameters import Parameter, Parameters, Registry, Value
 from evod.results import WorldInfo
 from evod.tables import html_table
 
@@ -54,10 +54,21 @@ class ParameterAttributes:
         return LiveParameters(self)
 
 
+class _ReadName(str):
+    """The name of a parameter from a loop over `of`, with what the request of the loop has read about it."""
+
+    of: LiveParameters | None = None
+    parameter: Parameter
+
+    def __reduce__(self) -> Any:
+        return str, (str(self),)
+
+
 class LiveParameters(Mapping[str, Any]):
     """The current parameters of a world, returned by `World.parameters`.
 
-    The attributes are the values. Indexing with the name of a parameter returns a `Parameter` object.
+    The attributes are the values. Indexing with the name of a parameter returns a `Parameter` object. A loop, and
+    `dict(world.parameters)`, reads all parameters with one request.
     """
 
     def __init__(self, world: _World) -> None:
@@ -74,16 +85,22 @@ class LiveParameters(Mapping[str, Any]):
         self._world.set({name: value})
 
     def __getitem__(self, name: str) -> Any:
+        if isinstance(name, _ReadName) and name.of is self:
+            name.of = None  # the next access sends a request
+            return name.parameter
         return self._world.get_parameters()[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._world.lab.registry())
+        for text, parameter in self._world.get_parameters().items():
+            name = _ReadName(text)
+            name.of, name.parameter = self, parameter
+            yield name
 
     def __len__(self) -> int:
         return len(self._world.lab.registry())
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self]
+        return [*super().__dir__(), *self._world.lab.registry()]
 
     def __repr__(self) -> str:
         return f"<parameters of {self._world!r}>"

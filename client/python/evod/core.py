@@ -6,6 +6,9 @@ Subscription. After a reconnect the core sends its Hello, subscribes again, and 
 the same client_key and request_id. The repetition is idempotent, because the server has a reply cache: it applies each
 command once. Requests that contain an id of their session fail with it: those about subscriptions, exports and replays.
 
+Members      More than 30: requests, subscriptions and streams of snapshots begin and end together with a session, so
+             each of its methods changes several of them.
+
 Threads      none of its own. Only one thread at a time may call a Core.
 Bounds       Requests beyond the server's limit are queued here. A subscription keeps the newest EVENTS_KEPT events and
              reports dropped ones by an EventsDropped. A snapshot is acknowledged when the caller takes it; therefore at

@@ -1,4 +1,7 @@
-"""Reads run files as pandas tables and numpy arrays, without a server (docs/RUN_FILE.md)."""
+"""Reads run files as pandas tables and numpy arrays, without a server (docs/RUN_FILE.md).
+
+RunFile has more than 30 members: each table of the file is one of them, and a script finds it by its name.
+"""
 from __future__ import annotations
 
 import json

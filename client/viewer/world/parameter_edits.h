@@ -5,6 +5,8 @@
 // revision on which the edits are based. If another client has changed a parameter since, the server therefore rejects
 // the request.
 //
+// It has more than 30 members: one to read and one to change each state of a parameter.
+//
 // Owner        the parameters panel.
 // Threads      none.
 #pragma once

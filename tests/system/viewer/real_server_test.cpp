@@ -70,7 +70,7 @@ TEST(RealServer, KeysCommandTheWorld) {
 
 TEST(RealServer, TheWindowOpensInTheMiddleOfTheScreen) {
     for (const std::string scale : {"1", "4"}) {
-        Process evoview{EVOVIEW, {"--start", "--scale", scale}};
+        Process evoview{EVOVIEW, {"localhost:1", "--scale", scale}};
         Person person;
         ASSERT_TRUE(person.finds_window());
         const Person::Place whole = person.whole_screen();
@@ -81,7 +81,6 @@ TEST(RealServer, TheWindowOpensInTheMiddleOfTheScreen) {
 }
 
 TEST(RealServer, ShowsNoRunningStateWithoutAServer) {
-    const TemporaryFolder folder; // of the settings
     RealServer server{{"--seed", "7"}};
     Process evoview{EVOVIEW, {"--server", server.address(), "--size", "1000x500", "--skin", "classic"}};
     Person person;

@@ -70,7 +70,8 @@ class Forks(Case):
         self.control.call(delete_world=c.DeleteWorld(world="default"))
         browser.wait("evod.server.world('default') === null", "no origin")
         browser.panel("Glass box")
-        browser.wait_for_text("Generation 3 bred before this fork began, in a run that no world of this server has now.",
+        browser.wait_for_text("Generation 3 bred before this fork began, in a run "
+                              "that no world of this server has now.",
                               NOTE)
 
 

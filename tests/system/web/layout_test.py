@@ -1,5 +1,5 @@
-"""The layout of the page in a real Chromium, from phones to large screens and zoomed windows: what is visible without an
-action, how much room a panel has, and that nothing scrolls sideways."""
+"""The layout of the page in a real Chromium, from phones to large screens and zoomed windows: what is visible without
+an action, how much room a panel has, and that nothing scrolls sideways."""
 import json
 import signal
 import sys
@@ -11,7 +11,8 @@ from screenshots import PHONE, SIZES, TABLET, TOUCHED, show
 
 LAPTOP = (1366, 768)
 PANEL_PX_MIN, WORLD_PX_MIN, TOUCH_PX_MIN = 400, 120, 24
-PLACE = """((e) => { if (!e?.checkVisibility()) return null; const { left, top, right, bottom } = e.getBoundingClientRect();
+PLACE = """((e) => { if (!e?.checkVisibility()) return null;
+           const { left, top, right, bottom } = e.getBoundingClientRect();
            return [left, top, right, bottom].map(Math.round); })(document.querySelector(arguments[0]))"""
 
 
@@ -146,6 +147,7 @@ class Layout(Case):
         browser.reload()
         self.assertIsNone(browser.value(PLACE, ".introduction"))
         browser.element("body").send_keys("?")
+        browser.wait_for_text("Show the introduction", "dialog[open]")  # its code is loaded first
         browser.press("Show the introduction", "dialog[open]")
         browser.wait_for_text("What you see", ".introduction")
         self.assertEqual(browser.value("document.activeElement.textContent"), "Next")

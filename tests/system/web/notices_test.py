@@ -69,7 +69,8 @@ class Notices(Case):
         watching = "You are watching."
         for name, begin, text, end, restore in (
                 ("key", lambda: self.key(Keys.SPACE), watching, browser.take_part, lambda: browser.take_part(False)),
-                ("button", lambda: browser.click(browser.element(".run")), watching, browser.take_part, lambda: browser.take_part(False)),
+                ("button", lambda: browser.click(browser.element(".run")), watching, browser.take_part,
+                 lambda: browser.take_part(False)),
                 ("undo", lambda: self.key(Keys.CONTROL + "z"), watching, browser.take_part,
                  lambda: browser.take_part(False)),
                 ("live", lambda: self.key("["), "The world is live", self.replay, self.live),

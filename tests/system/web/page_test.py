@@ -10,6 +10,13 @@ from page_case import Case, SHOWN_PANELS, access, c, plain
 
 REQUESTS_MAX, BYTES_MAX = 8, 130_000  # of the first load
 HOSTILE = "<img src=x onerror=alert(1)>"
+WITHOUT_WEBGL_2 = """
+    for (const { prototype } of [HTMLCanvasElement, OffscreenCanvas]) {
+      const { getContext } = prototype;
+      prototype.getContext = function (kind, ...options) {
+        return kind === "webgl2" ? null : getContext.call(this, kind, ...options);
+      };
+    }"""
 
 
 class Page(Case):
@@ -41,6 +48,23 @@ class Page(Case):
         self.shown_tick(130)
         wrong = [text for level, text in browser.log() if level == "SEVERE" or "Content Security" in text]
         self.assertEqual([text for text in wrong if f":{server.http_port}/" in text], [])
+
+    def test_without_webgl_2_the_page_says_so(self):
+        server, browser = self.start(), self.browser
+        control = self.client(server)
+        script = browser.cdp("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_WEBGL_2)
+        self.addCleanup(browser.cdp, "Page.removeScriptToEvaluateOnNewDocument", **script)
+        browser.open(self.page(server))
+        browser.wait_for_text("This browser cannot draw the island, because it has no WebGL 2, or WebGL 2 is switched "
+                              "off. The panels show the world as usual.", ".pane-note")
+        for tick in (130, 260):  # a generation ends before each
+            control.run_to(tick)
+            self.shown_tick(tick)
+        browser.wait_for_text("Generation 3", ".pane-head h1")
+        for title in browser.panels():
+            browser.panel(title)
+            browser.wait(f"{SHOWN_PANELS}.some((panel) => panel.innerText !== '')", title)
+        self.assertEqual([text for level, text in browser.log() if level == "SEVERE"], [])
 
     def test_world_generation_and_tick_are_shown(self):
         server = self.start()

@@ -13,13 +13,15 @@ LEAST = 24  # CSS pixels, WCAG 2.5.8
 SMALL = """(() => {
   const all = "a[href], button, input, select, textarea, summary, [role=button], [role=tab], [role=slider], [onclick]";
   const targets = [...document.querySelectorAll(all)]
-    .filter((e) => !e.disabled && e.type !== "file" && e.checkVisibility({ checkVisibilityCSS: true, opacityProperty: true }));
+    .filter((e) => !e.disabled && e.type !== "file")
+    .filter((e) => e.checkVisibility({ checkVisibilityCSS: true, opacityProperty: true }));
   return targets.flatMap((e) => {
     const { width, height } = (e.closest("label") ?? e).getBoundingClientRect();
     const inline = e.matches("a") && e.closest("p") !== null;
     const hidden = width <= 1 || height <= 1 || e.classList.contains("skip");
     return inline || hidden || (width >= arguments[0] - 0.01 && height >= arguments[0] - 0.01) ? []
-      : [`${e.tagName} ${e.className} “${e.getAttribute("aria-label") ?? e.textContent.slice(0, 20)}” ${width.toFixed(1)} x ${height.toFixed(1)}`];
+      : [`${e.tagName} ${e.className} “${e.getAttribute("aria-label") ?? e.textContent.slice(0, 20)}” ` +
+         `${width.toFixed(1)} x ${height.toFixed(1)}`];
   });
 })()"""
 

@@ -146,6 +146,7 @@ class TwoWorlds(Case):
         browser.open(self.page(self.served, "#world=large"))
         browser.take_part()
         browser.press("Show evolution")
+        browser.wait_for_text("This world is in generation 1", ".banners")  # its code is loaded first
         browser.press("Run 30 generations at full speed", ".banners")
         browser.wait("document.querySelector('.banners progress') !== null", "the progress")
         self.control.wait_world(lambda world: world.speed.max and world.state == w.RUN_STATE_RUNNING, "large")
@@ -172,8 +173,8 @@ class TwoWorlds(Case):
         self.browser.press("New …")
         self.browser.wait_for_text("Create and run", "dialog[open]")  # its code is loaded first
         self.browser.press("Create and run", "dialog[open]")
-        self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, "default-2")
         self.browser.wait("evod.app.world().name === 'default-2'", "the new world")
+        self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, "default-2")
 
     def test_placing_offers_undo(self):
         browser = self.browser

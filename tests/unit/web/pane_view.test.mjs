@@ -113,6 +113,19 @@ test("the end of following restores the view", () => {
   }
 });
 
+test("a fast worker does not replace the view to restore", () => {
+  const of = new_view();
+  of.view.zoom_by(2);
+  const before = of.view.camera;
+  of.selection.id = 7;
+  of.selection.set_follow(true);
+  of.view.followed({ ...of.view.shown(), x_px: 1 }); // before the pane has refreshed
+  of.view.follow_selection();
+  of.selection.set_follow(false);
+  of.view.follow_selection();
+  assert.deepEqual(of.view.camera, before);
+});
+
 test("a lost organism leaves the whole island", () => {
   const of = new_view();
   of.view.zoom_by(4);

@@ -111,7 +111,7 @@ test("a step always moves, and stops at the bounds", () => {
 test("an edit back to the value is none", () => {
   const edits = made();
   edits.edit(0, { real: 0.3 });
-  assert.deepEqual([edits.edit_count, edits.is_edited(0), edits.is_default(0)], [1, true, false]);
+  assert.deepEqual([edits.edit_count, edits.parameters[0].edit !== null, edits.parameters[0].is_default], [1, true, false]);
   edits.edit(0, { real: 0.15 });
   assert.equal(edits.edit_count, 0);
 });
@@ -133,7 +133,7 @@ test("an accepted edit becomes the value", () => {
   edits.edit(0, { real: 0.3 });
   edits.apply("w");
   assert.equal(accepted(edits, 6, state("mutation_chance", { real: 0.3 })), false);
-  assert.deepEqual([edits.edit_count, edits.revision, edits.current_value(0)], [0, 6, { real: 0.3 }]);
+  assert.deepEqual([edits.edit_count, edits.revision, edits.parameters[0].value], [0, 6, { real: 0.3 }]);
 });
 
 test("a value edited while it was sent stays edited", () => {
@@ -142,7 +142,7 @@ test("a value edited while it was sent stays edited", () => {
   edits.apply("w");
   edits.edit(0, { real: 0.4 });
   accepted(edits, 6, state("mutation_chance", { real: 0.3 }));
-  assert.deepEqual([edits.edit_count, edits.shown(0)], [1, { real: 0.4 }]);
+  assert.deepEqual([edits.edit_count, edits.parameters[0].shown], [1, { real: 0.4 }]);
 });
 
 test("a refusal marks its parameters and keeps the edits", () => {
@@ -152,9 +152,9 @@ test("a refusal marks its parameters and keeps the edits", () => {
   const violation = { field: "set_parameters.mutation_chance", allowed: "0 to 1", got: "3" };
   assert.equal(edits.answered({ refusal: { message: "no", violations: [violation] } }), true);
   assert.equal(edits.problem, "Nothing was changed: see the marked parameters");
-  assert.deepEqual([edits.violation(0), edits.edit_count, edits.busy], [violation, 1, false]);
+  assert.deepEqual([edits.parameters[0].violation, edits.edit_count, edits.busy], [violation, 1, false]);
   edits.edit(0, { real: 0.5 });
-  assert.deepEqual([edits.violation(0), edits.problem], [null, ""]);
+  assert.deepEqual([edits.parameters[0].violation, edits.problem], [null, ""]);
 });
 
 test("a conflict asks to check the values", () => {
@@ -179,7 +179,7 @@ test("changes of others are named, and gaps are noticed", () => {
   const edits = made();
   const by = { kind: "ACTOR_KIND_CLIENT", user: "anna", client: "evoview" };
   assert.equal(edits.update_changed({ revision: 6, by, changed: [state("food_count", { count: 25 }, { count: 60 })] }), true);
-  assert.deepEqual([edits.client_of_last_change(1), edits.is_pending(1), edits.requested_value(1)], ["anna: evoview", true, { count: 60 }]);
+  assert.deepEqual([edits.parameters[1].client_of_last_change, edits.parameters[1].pending !== null, edits.parameters[1].requested], ["anna: evoview", true, { count: 60 }]);
   assert.equal(edits.update_changed({ revision: 6, by, changed: [] }), true, "known already");
   assert.equal(edits.update_changed({ revision: 9, by, changed: [] }), false);
 });
@@ -194,7 +194,7 @@ test("an edit that another client makes too is done", () => {
 test("an older set is ignored", () => {
   const edits = made();
   edits.update_all({ revision: 4, parameters: [state("food_count", { count: 1 })] });
-  assert.deepEqual([edits.current_value(1), edits.revision], [{ count: 25 }, 5]);
+  assert.deepEqual([edits.parameters[1].value, edits.revision], [{ count: 25 }, 5]);
 });
 
 // ---- undo ----
@@ -208,38 +208,38 @@ function changed_to(edits, value, revision) {
 test("undo and redo send the values again", () => {
   const edits = made();
   changed_to(edits, 0.3, 6);
-  assert.deepEqual([edits.can_undo, edits.can_redo], [true, false]);
-  assert.deepEqual(edits.undo("w").parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
+  assert.equal(edits.reverse("w", "redo"), null);
+  assert.deepEqual(edits.reverse("w", "undo").parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
   accepted(edits, 7, state("mutation_chance", { real: 0.15 }));
-  assert.deepEqual([edits.can_undo, edits.can_redo], [false, true]);
-  assert.deepEqual(edits.redo("w").parameters, [{ name: "mutation_chance", value: { real: 0.3 } }]);
+  assert.equal(edits.reverse("w", "undo"), null);
+  assert.deepEqual(edits.reverse("w", "redo").parameters, [{ name: "mutation_chance", value: { real: 0.3 } }]);
   accepted(edits, 8, state("mutation_chance", { real: 0.3 }));
-  assert.deepEqual([edits.can_undo, edits.can_redo], [true, false]);
+  assert.equal(edits.reverse("w", "redo"), null);
 });
 
 test("undo leaves values of others", () => {
   const edits = made();
   changed_to(edits, 0.3, 6);
   edits.update_changed({ revision: 7, by: {}, changed: [state("mutation_chance", { real: 0.9 })] });
-  assert.equal(edits.undo("w"), null);
-  assert.equal(edits.can_undo, false);
+  assert.equal(edits.reverse("w", "undo"), null);
+  assert.equal(edits.busy, false);
 });
 
 test("a refused undo can be tried again", () => {
   const edits = made();
   changed_to(edits, 0.3, 6);
-  edits.undo("w");
+  edits.reverse("w", "undo");
   edits.answered({ lost: true });
-  assert.deepEqual(edits.undo("w").parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
+  assert.deepEqual(edits.reverse("w", "undo").parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
 });
 
 test("a new change ends redo", () => {
   const edits = made();
   changed_to(edits, 0.3, 6);
-  edits.undo("w");
+  edits.reverse("w", "undo");
   accepted(edits, 7, state("mutation_chance", { real: 0.15 }));
   changed_to(edits, 0.5, 8);
-  assert.equal(edits.can_redo, false);
+  assert.equal(edits.reverse("w", "redo"), null);
 });
 
 // ---- plans and dry runs ----
@@ -249,10 +249,10 @@ test("a planned change is not an undo step", () => {
   edits.edit(0, { real: 0.3 });
   assert.equal(edits.apply("w", { generation: 30 }).at_generation, 30);
   assert.equal(edits.answered({ set: null }), true);
-  assert.deepEqual([edits.edit_count, edits.can_undo], [0, false]);
+  assert.deepEqual([edits.edit_count, edits.reverse("w", "undo")], [0, null]);
   edits.update_all({ revision: 5, parameters: [], planned: [{ id: 1, generation: 30, parameters: [{ name: "mutation_chance", value: { real: 0.3 } }] }],
                      schedule: [{ name: "mutation_chance", generation: 50, value: { real: 0.01 } }] });
-  assert.deepEqual(edits.planned_values(0), ["0.01 in generation 50", "0.3 in generation 30"]);
+  assert.deepEqual(rules.planned_values(edits, "mutation_chance"), ["0.01 in generation 50", "0.3 in generation 30"]);
   assert.equal(rules.when_text({ tick: 1200 }), "after tick 1,200");
 });
 
@@ -264,7 +264,7 @@ test("a dry run marks values and changes nothing", () => {
   assert.deepEqual([fields.dry_run, fields.at_tick, edits.busy], [true, 9, false]);
   const refusal = { message: "no", violations: [{ field: "set_parameters.mutation_chance", allowed: "0 to 1", got: "3" }] };
   edits.checked(number, refusal);
-  assert.equal(edits.violation(0).allowed, "0 to 1");
+  assert.equal(edits.parameters[0].violation.allowed, "0 to 1");
   assert.equal(edits.problem, "");
 });
 
@@ -274,5 +274,5 @@ test("a dry run of earlier edits is ignored", () => {
   const { number } = edits.check("w", null);
   edits.edit(0, { real: 0.5 });
   edits.checked(number, { message: "no", violations: [{ field: "set_parameters.mutation_chance", allowed: "0 to 1", got: "3" }] });
-  assert.equal(edits.violation(0), null);
+  assert.equal(edits.parameters[0].violation, null);
 });

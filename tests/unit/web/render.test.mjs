@@ -49,9 +49,8 @@ test("the colours of an island are those of evoview", () => {
   }
 });
 
-test("lineages, kinds and the unknown have evoview's colours", () => {
+test("kinds and the unknown have evoview's colours", () => {
   assert.deepEqual(render.kinds, constants.get("kinds"));
-  assert.deepEqual(render.lineages, constants.get("lineages"));
   assert.deepEqual(render.unknown, constants.get("unknown"));
 });
 

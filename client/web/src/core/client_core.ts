@@ -10,6 +10,9 @@
 // command once. Requests that contain an id of their session fail with it: those about subscriptions, exports and
 // replays.
 //
+// Members      More than 30: requests, subscriptions and streams of snapshots begin and end together with a session, so
+//              each of its methods changes several of them.
+//
 // Bounds       Requests beyond the server's limit are queued here. Every snapshot of a subscription with
 //              unacknowledged_max has to be passed to acknowledge(), after it was drawn or dropped.
 import {DamagedData, InvalidMessage, SessionEnded} from "./errors";

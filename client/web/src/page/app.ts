@@ -8,22 +8,23 @@ import {set_attribute} from "../widgets/controls";
 import {copy_text} from "../widgets/copy";
 import {h} from "../widgets/dom";
 import {event_text, noticed_events} from "../world/event_text";
-import {Evolution} from "./evolution";
+import {EvolutionButton} from "./evolution_button";
 import {Introduction} from "./introduction";
 import {LinkFollower} from "./link_follower";
 import {link_of} from "../world/link";
 import {unused_name} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
-import {Help, type KeyTarget, listen_to_keys} from "./keys";
+import type {Help} from "../panels/help";
+import {key_lines, type KeyTarget, last_panel_key, listen_to_keys} from "./keys";
 import {Banners, Notices, type Notify} from "../widgets/notices";
 import {Overview} from "./overview";
 import type {PaneArea} from "./pane_area";
 import {PaneAreas} from "./pane_areas";
-import {SecondWorld} from "./second_world";
+import type {SecondWorld} from "../panels/second_world";
 import type {Server} from "../world/server";
 import {of_browser} from "../world/storage";
 import {app_texts} from "../texts/app";
-import {evolution_texts} from "../texts/evolution";
+import {evolution_button_texts} from "../texts/evolution_button";
 import {undo_texts} from "../texts/undo";
 import {theme_button} from "../widgets/theme";
 import type {Tokens} from "../world/tokens";
@@ -38,13 +39,13 @@ export class App implements KeyTarget {
   readonly element: HTMLElement;
   readonly column: Column;
   readonly panes: PaneAreas;
-  readonly evolution: Evolution;
+  readonly evolution: EvolutionButton;
   readonly introduction: Introduction;
 
   readonly #empty: HTMLElement;
   readonly #banners = new Banners();
   readonly #notices = new Notices();
-  readonly #help = new Help(this);
+  #help: Help|null = null;
   readonly #link = new LinkFollower(this, () => this.refresh());
   readonly #show_column: HTMLButtonElement;
   readonly #tokens: Tokens;
@@ -63,12 +64,15 @@ export class App implements KeyTarget {
       on_select: () => this.#show_organism(),
       on_placed: () => offer_undo(this),
       on_change: () => this.#refresh_column(),
-      choose_second: () => (this.#second ??= new SecondWorld(this)).open(),
+      choose_second: () => void this.attempt(async () => {
+        const {SecondWorld: Loaded} = await import("../panels/loaded_later");
+        (this.#second ??= new Loaded(this)).open();
+      }),
     });
-    this.evolution = new Evolution(this, () => this.refresh());
+    this.evolution = new EvolutionButton(this, () => this.refresh());
     const offer =
       h("button", {type: "button", class: "button button-primary", onclick: () => this.evolution.toggle()},
-        evolution_texts.show);
+        evolution_button_texts.show);
     this.introduction = new Introduction(offer);
     const button = (label: string, name: string, help: string, classes: string, act: () => void) =>
       h("button", {type: "button", class: `button square ${classes}`, "aria-label": name, title: help, onclick: act},
@@ -78,7 +82,7 @@ export class App implements KeyTarget {
     this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
     const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, new Overview(this, this.evolution.button), panels.map((make) => make(this)),
+      this, server, new Overview(this, this.evolution.element), panels.map((make) => make(this)),
       new Tools(this, () => this.panes.focused.pane.tool), [theme_button(), help, hide]);
     this.element =
       h("div", {class: "app"},
@@ -238,7 +242,12 @@ export class App implements KeyTarget {
   }
 
   toggle_help(): void {
-    this.#help.toggle();
+    void this.attempt(async () => {
+      const {Help: Loaded} = await import("../panels/loaded_later");
+      const titles = this.column.panels.slice(0, last_panel_key).map(({title}) => title);
+      this.#help ??= new Loaded(key_lines(), titles, () => this.introduction.begin());
+      this.#help.toggle();
+    });
   }
 
   #refresh_column(): void {

@@ -5,12 +5,12 @@ import {session_text} from "../texts/users";
 import type {Banner} from "../widgets/notices";
 import type {Server} from "../world/server";
 import type {Tokens} from "../world/tokens";
-import type {Evolution} from "./evolution";
+import type {EvolutionButton} from "./evolution_button";
 import type {LinkFollower} from "./link_follower";
 
 /** on_decline: called after the user has declined the token of a link. */
 export function banners_of(
-  server: Server, tokens: Tokens, link: LinkFollower, evolution: Evolution, on_decline: () => void): Banner[] {
+  server: Server, tokens: Tokens, link: LinkFollower, evolution: EvolutionButton, on_decline: () => void): Banner[] {
   return [
     ...of_connection(server), ...of_token(server, tokens, on_decline), ...link.banners(), ...of_storage(server),
     ...evolution.banners()

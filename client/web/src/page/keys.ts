@@ -1,17 +1,14 @@
-// keys: the keys of the whole page, and the help that lists them. Keys of the canvas (pan, zoom) belong to Pane.
+// keys: the keys of the whole page; panels/help lists them. Keys of the canvas (pan, zoom) belong to Pane.
 import type {RequestKind} from "../core/messages";
 import type {Point} from "../render/camera";
 import {app_texts} from "../texts/app";
-import {introduction_texts} from "../texts/introduction";
-import {gesture_help, key_help, key_texts} from "../texts/keys";
-import {Dialog} from "../widgets/controls";
-import {h} from "../widgets/dom";
+import type {KeyLine} from "../panels/help";
+import {key_texts} from "../texts/keys";
 import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
 import {undo, undo_verb_of} from "../world/undo_command";
 import type {Column} from "./column";
-import type {Evolution} from "./evolution";
-import type {Introduction} from "./introduction";
+import type {EvolutionButton} from "./evolution_button";
 import type {PaneAreas} from "./pane_areas";
 import {toggle_replay} from "./run_bar";
 
@@ -23,18 +20,17 @@ export interface KeyTarget extends PanelContext {
   link(): string;
   toggle_column(): void;
   toggle_help(): void;
-  readonly evolution: Evolution;
-  readonly introduction: Introduction;
+  readonly evolution: EvolutionButton;
 }
 
 interface Binding {
   keys: string[]; // values of KeyboardEvent.key; letters in lower case
   shown?: string; // in the help, if it differs from keys
-  help: string;
+  help: KeyLine["help"];
   act(app: KeyTarget, event: KeyboardEvent): unknown; // a promise's refusal is shown as a notice
 }
 
-const last_panel_key = 9;
+export const last_panel_key = 9;
 
 const zoom_step = 1.25, pan_px = 48;
 const arrows: {[key: string]: Point} = {
@@ -49,74 +45,70 @@ const bindings: Binding[] = [
   {
     keys: [" "],
     shown: "Space",
-    help: key_help.pause,
+    help: "pause",
     act: (app) => command(app, "pause", () => app.world().control.pause_or_resume())
   },
-  {keys: ["."], help: key_help.tick, act: (app) => command(app, "pause", () => app.world().control.step(1))},
+  {keys: ["."], help: "tick", act: (app) => command(app, "pause", () => app.world().control.step(1))},
   {
     keys: [">", ":"],
     shown: "Shift+.",
-    help: key_help.ticks,
+    help: "ticks",
     act: (app) => command(app, "pause", () => app.world().control.step(60))
   },
   {
     keys: ["+", "="],
     shown: "+",
-    help: key_help.faster,
+    help: "faster",
     act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(2))
   },
   {
     keys: ["-", "_"],
     shown: "−",
-    help: key_help.slower,
+    help: "slower",
     act: (app) => command(app, "set_speed", () => app.world().control.multiply_speed(0.5))
   },
   {
     keys: ["r"],
-    help: key_help.real_time,
+    help: "real_time",
     act: (app) => command(app, "set_speed", () => app.world().control.set_speed({real_time_factor: 1}))
   },
-  {
-    keys: ["m"],
-    help: key_help.maximum,
-    act: (app) => command(app, "set_speed", () => app.world().control.toggle_max_speed())
-  },
-  {keys: ["PageDown"], shown: "Page Down", help: key_help.next_island, act: (app) => move_island(app, 1)},
-  {keys: ["PageUp"], shown: "Page Up", help: key_help.previous_island, act: (app) => move_island(app, -1)},
-  {keys: ["i"], help: key_help.all_islands, act: (app) => app.panes.focused.toggle_tiles(app.notify)},
-  {keys: ["w"], help: key_help.next_world, act: (app) => next_world(app)},
-  {keys: ["p"], help: key_help.replay, act: (app) => toggle_replay(app, app.world())},
-  {keys: ["["], help: key_help.previous_generation, act: (app) => move_generation(app, -1)},
-  {keys: ["]"], help: key_help.next_generation, act: (app) => move_generation(app, 1)},
-  {keys: ["b"], help: key_help.beside, act: (app) => app.panes.toggle_beside()},
-  {keys: ["e"], help: key_help.evolution, act: (app) => app.evolution.toggle()},
-  {keys: ["x"], help: key_help.other_world, act: (app) => app.panes.focus_other()},
-  {keys: ["k"], help: key_help.link, act: (app) => app.panes.toggle_link()},
-  {keys: ["f", "Home"], shown: "F   Home", help: key_help.fit, act: (app) => app.panes.focused.pane.view.fit()},
+  {keys: ["m"], help: "maximum", act: (app) => command(app, "set_speed", () => app.world().control.toggle_max_speed())},
+  {keys: ["PageDown"], shown: "Page Down", help: "next_island", act: (app) => move_island(app, 1)},
+  {keys: ["PageUp"], shown: "Page Up", help: "previous_island", act: (app) => move_island(app, -1)},
+  {keys: ["i"], help: "all_islands", act: (app) => app.panes.focused.toggle_tiles(app.notify)},
+  {keys: ["w"], help: "next_world", act: (app) => next_world(app)},
+  {keys: ["p"], help: "replay", act: (app) => toggle_replay(app, app.world())},
+  {keys: ["["], help: "previous_generation", act: (app) => move_generation(app, -1)},
+  {keys: ["]"], help: "next_generation", act: (app) => move_generation(app, 1)},
+  {keys: ["b"], help: "beside", act: (app) => app.panes.toggle_beside()},
+  {keys: ["e"], help: "evolution", act: (app) => app.evolution.toggle()},
+  {keys: ["x"], help: "other_world", act: (app) => app.panes.focus_other()},
+  {keys: ["k"], help: "link", act: (app) => app.panes.toggle_link()},
+  {keys: ["f", "Home"], shown: "F   Home", help: "fit", act: (app) => app.panes.focused.pane.view.fit()},
   {
     keys: ["z"],
     shown: "Z   Shift+Z",
-    help: key_help.zoom,
+    help: "zoom",
     act: (app, event) => app.panes.focused.pane.view.zoom_by(event.shiftKey ? 1 / zoom_step : zoom_step)
   },
   {
     keys: Object.keys(arrows),
     shown: "←   →   ↑   ↓",
-    help: key_help.move,
+    help: "move",
     act: (app, event) => app.panes.focused.pane.view.pan(arrows[event.key]!)
   },
-  {keys: ["l"], help: key_help.follow, act: (app) => app.world().selection.set_follow(!app.world().selection.follow)},
-  {keys: ["c"], help: key_help.colour, act: (app) => next_colouring(app)},
+  {keys: ["l"], help: "follow", act: (app) => app.world().selection.set_follow(!app.world().selection.follow)},
+  {keys: ["c"], help: "colour", act: (app) => next_colouring(app)},
   {
     keys: ["v"],
-    help: key_help.perception,
+    help: "perception",
     act: (app) => app.world().set_look({perception: next_of(app.world().look.perception)})
   },
-  {keys: ["g"], help: key_help.forces, act: (app) => app.world().set_look({forces: next_of(app.world().look.forces)})},
-  {keys: ["t"], help: key_help.trails, act: (app) => app.world().set_look({trails: !app.world().look.trails})},
-  {keys: ["d"], help: key_help.column, act: (app) => app.toggle_column()},
-  {keys: ["?", "h", "F1"], shown: "?   H", help: key_help.help, act: (app) => app.toggle_help()},
-  {keys: ["Escape"], shown: "Esc", help: key_help.escape, act: (app) => escape(app)},
+  {keys: ["g"], help: "forces", act: (app) => app.world().set_look({forces: next_of(app.world().look.forces)})},
+  {keys: ["t"], help: "trails", act: (app) => app.world().set_look({trails: !app.world().look.trails})},
+  {keys: ["d"], help: "column", act: (app) => app.toggle_column()},
+  {keys: ["?", "h", "F1"], shown: "?   H", help: "help", act: (app) => app.toggle_help()},
+  {keys: ["Escape"], shown: "Esc", help: "escape", act: (app) => escape(app)},
 ];
 
 let by_pointer = false; // whether the focus was moved by a pointer last, not by a key
@@ -191,42 +183,10 @@ function keeps_key(event: KeyboardEvent): boolean {
   return true;
 }
 
-export class Help {
-  #dialog: Dialog|null = null;
-
-  readonly #app: KeyTarget;
-
-  constructor(app: KeyTarget) {
-    this.#app = app;
-  }
-
-  toggle(): void {
-    if (this.#dialog?.is_open) {
-      this.#dialog.close();
-      return;
-    }
-    if (!this.#dialog) {
-      this.#dialog = new Dialog(app_texts.help, "help");
-      const panels = this.#app.column.panels.slice(0, last_panel_key);
-      const lines: [string, string][] = [
-        ...bindings.map(
-          ({keys, shown, help}): [string, string] => [shown ?? keys.map((key) => key.toUpperCase()).join("   "), help]),
-        ...panels.map((panel, i): [string, string] => [String(i + 1), key_texts.panel(panel.title)]),
-        ...gesture_help,
-      ];
-      const again = (): void => {
-        this.#dialog?.close();
-        this.#app.introduction.begin();
-      };
-      this.#dialog.body.append(
-        h("button", {type: "button", class: "button", onclick: again}, introduction_texts.again),
-        h("dl", {class: "keys"},
-          ...lines.map(
-            ([keys, help]) =>
-              h("div", {}, h("dt", {}, ...keys.split("   ").map((key) => h("kbd", {}, key))), h("dd", {}, help)))));
-    }
-    this.#dialog.open();
-  }
+/** The names of the keys and what they do, for the help. */
+export function key_lines(): KeyLine[] {
+  return bindings.map(
+    ({keys, shown, help}) => ({keys: shown ?? keys.map((key) => key.toUpperCase()).join("   "), help}));
 }
 
 /** Runs a command, or shows why the user may not. */

@@ -112,6 +112,10 @@ export class PaneView {
 
   /** The worker has moved the view with a followed organism. */
   followed(camera: Camera): void {
+    if (this.#before_follow === null) { // the worker was faster than the refresh of the pane
+      this.follow_selection();
+      return;
+    }
     this.camera = camera;
     this.#on_move(this);
   }

@@ -1,15 +1,15 @@
 // RunBar: the controls of the shown world that are always in reach: run and pause, one generation, replay, fork, speed.
+import {both_texts} from "../texts/both";
 import {shown_number} from "../texts/numbers";
 import {run_bar_texts as texts} from "../texts/run_bar";
-import {both_texts} from "../texts/second_world";
 import {speed_text} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {speed_max} from "../world/control";
+import {both_state, run_or_pause_both} from "../world/run_both";
 
 import type {ViewedWorld} from "../world/world";
 import type {PanelContext} from "../world/panel_context";
-import {both_state, run_or_pause_both} from "./run_both";
 
 const slider_min = 0.1; // times real time; + and − reach the whole range of the server
 const slider_steps = 100; // 1, 10 and 100 times real time are steps

@@ -1,5 +1,5 @@
-// TimeGestures: what a user does with pointers and the wheel on the time line: choose a moment, zoom around the pointer,
-// move the line.
+// TimeGestures: what a user does with pointers and the wheel on the time line: choose a moment, zoom around the
+// pointer, move the line.
 //
 // A drag chooses moments; a drag on the labels above the line moves a line that is zoomed, and so do two fingers, which
 // also zoom.

@@ -6,7 +6,6 @@ import {EventsPanel} from "./events";
 import {LazyPanel} from "./lazy";
 import {ParametersPanel} from "./parameters";
 import {RunPanel} from "./run";
-import {ViewPanel} from "./view";
 import {WorldsPanel} from "./worlds";
 
 type Later = typeof import("./loaded_later");
@@ -21,7 +20,7 @@ export const panels: ((context: PanelContext) => Panel)[] = [
   (context) => new WorldsPanel(context),
   (context) => new RunPanel(context),
   (context) => new ParametersPanel(context),
-  (context) => new ViewPanel(context),
+  later("view", texts.view, ({ViewPanel}, context) => new ViewPanel(context)),
   later("organism", texts.organism, ({OrganismPanel}, context) => new OrganismPanel(context)),
   later("glass box", texts.glass_box, ({GlassBoxPanel}, context) => new GlassBoxPanel(context)),
   later("family", texts.family, ({FamilyPanel}, context) => new FamilyPanel(context)),

@@ -17,6 +17,7 @@ import type {Brain} from "../core/protocol";
 import {brain_texts as texts} from "../texts/brain";
 import {gene_label} from "../texts/genes";
 import {h, set_text, svg} from "../widgets/dom";
+import {svg_label, svg_line, svg_rect} from "../widgets/svg";
 
 const character_width = 6.6; // of a label, in CSS pixels
 const number_width = 38; // of " −0.00"
@@ -77,18 +78,13 @@ export class BrainView {
     });
     this.#lines = diagram.connections.map((connection, i) => {
       const from = diagram.neurons[connection.from]!, to = diagram.neurons[connection.to]!;
-      const line = svg("line", {
-        x1: from.x,
-        y1: from.y,
-        x2: to.x,
-        y2: to.y,
-        class: connection.weight < 0 ? "weight negative" : "weight positive",
-        "stroke-width": (0.6 + 2.6 * connection.strength).toFixed(2),
-        "stroke-opacity": (0.25 + 0.75 * connection.strength ** 1.5).toFixed(2),
-      });
-      const target = svg(
-        "line",
-        {x1: from.x, y1: from.y, x2: to.x, y2: to.y, class: "weight-target", onmouseenter: () => this.#point(null, i)});
+      const line =
+        svg_line(connection.weight < 0 ? "weight negative" : "weight positive", [from.x, from.y, to.x, to.y], {
+          "stroke-width": (0.6 + 2.6 * connection.strength).toFixed(2),
+          "stroke-opacity": (0.25 + 0.75 * connection.strength ** 1.5).toFixed(2)
+        });
+      const target =
+        svg_line("weight-target", [from.x, from.y, to.x, to.y], {onmouseenter: () => this.#point(null, i)});
       root.append(line, target);
       return line;
     });
@@ -105,21 +101,18 @@ export class BrainView {
       let value: SVGTextElement|null = null;
       if (neuron.kind === "bias") {
         const side = neuron.radius * 1.6;
-        group.append(svg(
-          "rect", {class: "neuron-base", x: neuron.x - side / 2, y: neuron.y - side / 2, width: side, height: side}));
+        group.append(svg_rect("neuron-base", [neuron.x - side / 2, neuron.y - side / 2, side, side]));
       } else {
         fill = svg("circle", {class: "neuron-fill", cx: neuron.x, cy: neuron.y, r: neuron.radius});
         group.append(svg("circle", {class: "neuron-base", cx: neuron.x, cy: neuron.y, r: neuron.radius}), fill);
       }
       const gap = neuron.radius + 5;
       if (neuron.layer === 0) {
-        group.append(svg(
-          "text", {class: "neuron-name", x: neuron.x - gap, y: neuron.y, "text-anchor": "end"},
-          gene_label(neuron.name)));
+        group.append(
+          svg_label("neuron-name", [neuron.x - gap, neuron.y], gene_label(neuron.name), {"text-anchor": "end"}));
       } else if (neuron.kind === "output") {
         value = svg("text", {class: "neuron-value", x: diagram.width - 2, y: neuron.y, "text-anchor": "end"});
-        group.append(
-          svg("text", {class: "neuron-name", x: neuron.x + gap, y: neuron.y}, gene_label(neuron.name)), value);
+        group.append(svg_label("neuron-name", [neuron.x + gap, neuron.y], gene_label(neuron.name)), value);
       }
       root.append(group);
       return {group, fill, value};

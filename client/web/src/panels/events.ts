@@ -4,6 +4,7 @@ import {common_texts} from "../texts/common";
 import {events_texts as texts} from "../texts/events";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {check, hint} from "../widgets/form";
 import {event_text} from "../world/event_text";
 
 import type {Event as ProtocolEvent} from "../core/protocol";
@@ -39,7 +40,7 @@ export class EventsPanel implements Panel {
   #this_world = h("input", {type: "checkbox", onchange: () => this.#rebuild()});
   #progress = h("input", {type: "checkbox", onchange: () => this.#rebuild()});
   #list = h("ol", {class: "journal", "aria-label": texts.list});
-  #empty = h("p", {class: "hint"}, texts.none_yet);
+  #empty = hint(texts.none_yet);
 
   #journal: {world: string; rows: HTMLElement[]}|null = null; // shown instead of the events
   #read: HTMLButtonElement;
@@ -54,8 +55,7 @@ export class EventsPanel implements Panel {
       "", context.notify,
       () => (this.#journal ? this.#show_journal(null) : void context.attempt(() => this.#read_journal())));
     this.#choices =
-      h("div", {class: "row"}, h("label", {class: "check"}, this.#this_world, texts.this_world),
-        h("label", {class: "check"}, this.#progress, texts.progress));
+      h("div", {class: "row"}, check(this.#this_world, texts.this_world), check(this.#progress, texts.progress));
     this.element =
       h("div", {class: "panel panel-events"}, h("div", {class: "row"}, this.#read), this.#title, this.#choices,
         this.#empty, this.#list);

@@ -8,6 +8,7 @@ import type {FamilyTree, Place} from "../family/spot";
 import {place_of} from "../family/tree";
 import {family_texts} from "../texts/family";
 import {h, set_text} from "../widgets/dom";
+import {hint, row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
 import {FamilyChoices} from "./family_choices";
@@ -51,11 +52,12 @@ export class FamilyPanel implements Panel {
       h("button", {class: "button", title: label, "aria-label": label, onclick: act}, text);
     this.#tree_parts =
       h("div", {class: "panel"}, this.#status.loaded, this.#status.sentence,
-        h("div", {class: "row"}, button("−", family_texts.zoom_out, () => this.#drawing.zoom(1 / zoom_of_button)),
+        row(
+          button("−", family_texts.zoom_out, () => this.#drawing.zoom(1 / zoom_of_button)),
           button("+", family_texts.zoom_in, () => this.#drawing.zoom(zoom_of_button)),
           button(family_texts.fit, family_texts.fit_title, () => this.#drawing.fit())),
         this.#drawing.element, this.#legend, this.#note.element, this.#marks.element, this.#table.element,
-        h("p", {class: "hint"}, family_texts.help_lines), h("p", {class: "hint"}, family_texts.help_keys));
+        hint(family_texts.help_lines), hint(family_texts.help_keys));
     this.element =
       h("div", {class: "panel family"}, this.#status.heading, this.#choices.element, this.#reroot, this.#status.problem,
         this.#tree_parts);

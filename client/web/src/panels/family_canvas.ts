@@ -34,30 +34,23 @@ export function row_height_of(rows: number): number {
   return rows <= 20 ? 36 : rows <= 50 ? 24 : 18;
 }
 
-interface Theme {
-  text: string;
-  quiet: string;
-  accent: string;
-  accent_text: string;
-  surface: string;
-  pointer: string;
-  focus: string;
-  warn: string;
-}
+const theme_colours = {
+  text: "--text",
+  quiet: "--text-2",
+  accent: "--accent",
+  accent_text: "--accent-text",
+  surface: "--surface",
+  pointer: "--pointer",
+  focus: "--focus",
+  warn: "--warn",
+};
+type Theme = {
+  [name in keyof typeof theme_colours]: string
+};
 
 export function theme_of(element: Element): Theme {
-  const style = getComputedStyle(element);
-  const value = (name: string): string => style.getPropertyValue(name).trim();
-  return {
-    text: value("--text"),
-    quiet: value("--text-2"),
-    accent: value("--accent"),
-    accent_text: value("--accent-text"),
-    surface: value("--surface"),
-    pointer: value("--pointer"),
-    focus: value("--focus"),
-    warn: value("--warn"),
-  };
+  const style = getComputedStyle(element), value_of = (name: string): string => style.getPropertyValue(name).trim();
+  return Object.fromEntries(Object.entries(theme_colours).map(([name, css]) => [name, value_of(css)])) as Theme;
 }
 
 /** Where the organisms of a tree are on a canvas of this width, in CSS pixels. */

@@ -5,6 +5,7 @@ import {gene_label} from "../organism/texts";
 import {family_texts} from "../texts/family";
 import {set_options} from "../widgets/controls";
 import {h} from "../widgets/dom";
+import {check, row} from "../widgets/form";
 
 const generation_choices = [5, 10, 20, 30, 50, 100];
 const gene_prefix = "gene ";
@@ -36,8 +37,7 @@ export class FamilyChoices {
       family_texts.order, [["lines", family_texts.order_lines], ["fitness", family_texts.order_fitness]], "lines");
     this.#colours = select(family_texts.colours, [["", family_texts.colour_nothing]], "");
     this.element =
-      h("div", {class: "row"}, this.#subject, this.#generations,
-        h("label", {class: "check"}, this.#both, family_texts.both_parents), this.#order, this.#colours);
+      row(this.#subject, this.#generations, check(this.#both, family_texts.both_parents), this.#order, this.#colours);
   }
 
   get whole(): boolean {

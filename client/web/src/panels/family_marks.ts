@@ -5,6 +5,7 @@ import type {FamilyTree, Place} from "../family/spot";
 import {place_of} from "../family/tree";
 import {family_texts} from "../texts/family";
 import {h, set_text} from "../widgets/dom";
+import {button} from "../widgets/form";
 
 export function organism_at(tree: FamilyTree, at: Place): Ancestor {
   return tree.rows[at.row]![at.place]!.ancestor;
@@ -25,7 +26,7 @@ export class FamilyMarks {
   #marked: readonly OrganismName[] = [];
   #shown: {tree: FamilyTree; marked: readonly OrganismName[]; result: MarksInTree}|null = null;
   readonly #text = h("p", {role: "status"});
-  readonly #clear = h("button", {class: "button", onclick: () => this.clear()}, family_texts.no_marks);
+  readonly #clear = button(family_texts.no_marks, () => this.clear());
   readonly #on_change: () => void;
 
   constructor(on_change: () => void) {

@@ -6,6 +6,7 @@ import type {FamilyTree, Place} from "../family/spot";
 import {gene_label, gene_number} from "../organism/texts";
 import {family_texts} from "../texts/family";
 import {h, set_text} from "../widgets/dom";
+import {button} from "../widgets/form";
 import type {ViewedWorld} from "../world/world";
 import {FamilyChanges} from "./family_changes";
 import {type MarksInTree, organism_at} from "./family_marks";
@@ -32,7 +33,7 @@ export class FamilyNote {
   readonly #changes = new FamilyChanges((text) => set_text(this.#genes, text));
 
   constructor(mark: (at: Place) => void) {
-    this.#mark = h("button", {class: "button", onclick: () => this.at && mark(this.at)}, family_texts.mark);
+    this.#mark = button(family_texts.mark, () => this.at && mark(this.at));
     this.element = h("div", {class: "family-reading"}, this.#text, this.#genes, h("div", {class: "row"}, this.#mark));
   }
 

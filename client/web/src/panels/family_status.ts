@@ -5,6 +5,7 @@ import type {ShownTree} from "../family/shown_tree";
 import type {FamilyTree} from "../family/spot";
 import {family_texts} from "../texts/family";
 import {h, set_text} from "../widgets/dom";
+import {button} from "../widgets/form";
 import type {FamilyChoices} from "./family_choices";
 import {ancestors_in} from "./family_marks";
 
@@ -21,15 +22,10 @@ export class FamilyStatus {
   constructor(choices: FamilyChoices, data: FamilyData, refresh: () => void) {
     this.#choices = choices;
     this.#data = data;
-    this.#retry =
-      h("button", {
-        class: "button",
-        onclick: () => {
-          data.try_again();
-          refresh();
-        }
-      },
-        family_texts.retry);
+    this.#retry = button(family_texts.retry, () => {
+      data.try_again();
+      refresh();
+    });
     this.problem = h("div", {class: "panel"}, this.#text, this.#retry);
   }
 

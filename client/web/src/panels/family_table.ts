@@ -6,6 +6,7 @@ import {family_texts} from "../texts/family";
 import {three_digits, with_separators} from "../texts/numbers";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {button} from "../widgets/form";
 
 const rows_max = 100; // at a time
 
@@ -27,11 +28,8 @@ export class FamilyTable {
     onchange: () => this.#show(Number(this.#generation.value), 0)
   });
   readonly #range = h("span", {class: "hint", role: "status"});
-  readonly #previous =
-    h("button", {class: "button", onclick: () => this.#show(this.#row, this.#first - rows_max)},
-      family_texts.previous_rows);
-  readonly #next = h(
-    "button", {class: "button", onclick: () => this.#show(this.#row, this.#first + rows_max)}, family_texts.next_rows);
+  readonly #previous = button(family_texts.previous_rows, () => this.#show(this.#row, this.#first - rows_max));
+  readonly #next = button(family_texts.next_rows, () => this.#show(this.#row, this.#first + rows_max));
   readonly #body = h("tbody", {});
 
   constructor() {

@@ -16,6 +16,7 @@ import {common_texts} from "../texts/common";
 import {freezer_texts as texts} from "../texts/freezer";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {hint, row} from "../widgets/form";
 import {accept_drops, open_button} from "../widgets/files";
 import {name_characters_max, name_of_file} from "../world/names";
 import type {Panel, PanelContext} from "../world/panel_context";
@@ -65,11 +66,11 @@ export class FreezerPanel implements Panel {
       h("table", {class: "table rows-table", "aria-label": texts.list}, table_head(texts.list_headings, Infinity),
         this.#rows);
     this.element =
-      h("div", {class: "panel panel-freezer"}, h("p", {class: "hint"}, texts.about),
+      h("div", {class: "panel panel-freezer"}, hint(texts.about),
         h("div", {class: "row", role: "group", "aria-label": texts.keep}, h("span", {}, texts.keep),
           this.#keep_selected, this.#keep_healthiest, this.#keep_population),
-        h("div", {class: "row"}, h("span", {}, texts.as), this.#name, open, field), this.#problem, this.#table,
-        this.#usage, this.#entry.element, h("p", {class: "hint"}, texts.where(location.host)));
+        row(h("span", {}, texts.as), this.#name, open, field), this.#problem, this.#table, this.#usage,
+        this.#entry.element, hint(texts.where(location.host)));
     accept_drops(this.element, (files) => void this.#open(files));
     this.#freezer.on_change(() => void this.#list());
     void this.#list();

@@ -5,6 +5,7 @@ import {freezer_texts as texts} from "../texts/freezer";
 import {number_in} from "../texts/numbers";
 import {set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
+import {labelled, row} from "../widgets/form";
 
 /** An entry of the freezer with its genes. */
 export interface ShownEntry {
@@ -28,8 +29,7 @@ export class FreezerChoice {
   constructor(on_change: () => void) {
     this.#on_change = on_change;
     this.element =
-      h("div", {class: "row"}, label_of(texts.island, this.#island), this.#island,
-        label_of(texts.organism, this.#organism), this.#organism);
+      row(labelled(texts.island, this.#island), this.#island, labelled(texts.organism, this.#organism), this.#organism);
   }
 
   show(shown: ShownEntry): void {
@@ -58,10 +58,4 @@ export class FreezerChoice {
   #field(id: string): HTMLInputElement {
     return h("input", {class: "field freezer-number", inputmode: "numeric", id, oninput: () => this.#on_change()});
   }
-}
-
-function label_of(text: string, field: HTMLElement): HTMLElement {
-  const label = h("label", {}, text);
-  label.htmlFor = field.id;
-  return label;
 }

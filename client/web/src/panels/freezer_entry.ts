@@ -2,11 +2,11 @@
 // places copies and compares genes.
 import type {Freezer} from "../freezer/freezer";
 import {is_organism, population_text} from "../freezer/population_csv";
-import {common_texts} from "../texts/common";
 import {freezer_texts as texts} from "../texts/freezer";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {save_file} from "../widgets/files";
+import {Question, row} from "../widgets/form";
 import {name_characters_max} from "../world/names";
 import type {PanelContext} from "../world/panel_context";
 
@@ -37,9 +37,12 @@ export class FreezerEntry {
     spellcheck: "false",
     autocomplete: "off"
   });
-  readonly #rename_form = this.#made_rename_form();
+  readonly #rename_form = new Question(
+    {before: [], field: this.#new_name}, texts.do_rename, () => void this.#act(() => this.#do_rename()),
+    () => this.#rename);
   readonly #question = h("p", {});
-  readonly #confirm = this.#made_question();
+  readonly #confirm = new Question(
+    {before: [this.#question]}, texts.do_remove, () => void this.#act(() => this.#do_remove()), () => this.#remove);
   readonly #wrong = h("p", {class: "error", role: "alert"}); // about the chosen organism
   readonly #problem = h("p", {class: "error", role: "alert"}); // of the last action
   #shown: ShownEntry|null = null;
@@ -55,8 +58,8 @@ export class FreezerEntry {
       () => void context.attempt(() => new_world_dialog(context).open(this.#shown?.kept.name ?? "")));
     this.element =
       h("section", {class: "panel freezer-entry", hidden: true}, this.#title,
-        h("div", {class: "row"}, this.#create, this.#download, this.#rename, this.#remove), this.#rename_form,
-        this.#confirm, this.#choice.element, this.#wrong, this.#placing.element, this.#problem, this.#genes.element);
+        row(this.#create, this.#download, this.#rename, this.#remove), this.#rename_form.element, this.#confirm.element,
+        this.#choice.element, this.#wrong, this.#placing.element, this.#problem, this.#genes.element);
   }
 
   /** Shows an entry; null: none. */
@@ -67,7 +70,7 @@ export class FreezerEntry {
     }
     this.#shown = shown;
     this.element.hidden = shown === null;
-    this.#rename_form.hidden = this.#confirm.hidden = true;
+    this.#rename_form.element.hidden = this.#confirm.element.hidden = true;
     set_text(this.#problem, "");
     if (shown) {
       set_text(this.#title, shown.kept.name);
@@ -103,52 +106,22 @@ export class FreezerEntry {
 
   // ---- files, names ----
 
-  #made_rename_form(): HTMLElement {
-    const form: HTMLElement = h(
-      "form", {
-        class: "confirm",
-        hidden: true,
-        onsubmit: (event: Event) => {
-          event.preventDefault();
-          void this.#act(() => this.#do_rename());
-        }
-      },
-      h("div", {class: "row"}, this.#new_name,
-        h("button", {type: "submit", class: "button button-primary"}, texts.do_rename),
-        h("button", {type: "button", class: "button", onclick: () => close(form, this.#rename)}, common_texts.cancel)));
-    return form;
-  }
-
-  #made_question(): HTMLElement {
-    const remove = (): void => void this.#act(() => this.#do_remove());
-    const question: HTMLElement =
-      h("div", {class: "confirm", hidden: true}, this.#question,
-        h("div", {class: "row"},
-          h("button", {type: "button", class: "button button-danger", onclick: remove}, texts.do_remove),
-          h("button", {type: "button", class: "button", onclick: () => close(question, this.#remove)},
-            common_texts.cancel)));
-    return question;
-  }
-
   #ask_rename(): void {
-    this.#confirm.hidden = true;
-    this.#rename_form.hidden = false;
+    this.#confirm.element.hidden = true;
     this.#new_name.value = this.#shown!.kept.name;
-    this.#new_name.select();
-    this.#new_name.focus();
+    this.#rename_form.open();
   }
 
   async #do_rename(): Promise<void> {
     const name = await this.#freezer.rename(this.#shown!.kept.name, this.#new_name.value.trim());
-    close(this.#rename_form, this.#rename);
+    this.#rename_form.close();
     this.#choose(name);
   }
 
   #ask_remove(): void {
     set_text(this.#question, texts.ask_remove(this.#shown!.kept.name));
-    this.#rename_form.hidden = true;
-    this.#confirm.hidden = false;
-    this.#confirm.querySelector("button")!.focus();
+    this.#rename_form.element.hidden = true;
+    this.#confirm.open();
   }
 
   async #do_remove(): Promise<void> {
@@ -168,9 +141,4 @@ export class FreezerEntry {
 
 function save({kept, population}: ShownEntry): void {
   save_file(new Blob([population_text(population)], {type: "text/csv"}), `${kept.name}.csv`);
-}
-
-function close(form: HTMLElement, button: HTMLElement): void {
-  form.hidden = true;
-  button.focus();
 }

@@ -5,6 +5,7 @@ import {body_genes, is_organism, type Population} from "../freezer/population_cs
 import {gene_label, gene_number} from "../organism/texts";
 import {freezer_texts as texts} from "../texts/freezer";
 import {h, set_text} from "../widgets/dom";
+import {hint} from "../widgets/form";
 
 import type {ChosenOrganism, ShownEntry} from "./freezer_choice";
 import {table_head} from "./rows";
@@ -89,7 +90,7 @@ function further_genes(
     if (details.open && details.children.length === 1) {
       details.append(table(population, genes.slice(0, further_genes_max), body_genes.length, other));
       if (genes.length > further_genes_max) {
-        details.append(h("p", {class: "hint"}, texts.genes_left_out(genes.length - further_genes_max)));
+        details.append(hint(texts.genes_left_out(genes.length - further_genes_max)));
       }
     }
   };

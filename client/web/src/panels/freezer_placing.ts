@@ -4,6 +4,7 @@ import {freezer_texts as texts} from "../texts/freezer";
 import {number_in} from "../texts/numbers";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
+import {row} from "../widgets/form";
 import {gene_problem} from "../world/names";
 import type {PanelContext} from "../world/panel_context";
 import {Placing} from "../world/placing";
@@ -41,8 +42,8 @@ export class FreezerPlacing {
     this.#by_clicks = guarded_button(texts.place, context.notify, () => this.#place_by_clicks());
     this.#scatter = guarded_button(texts.scatter, context.notify, () => void this.#place_anywhere());
     this.element =
-      h("div", {class: "panel"}, h("div", {class: "row"}, this.#by_clicks),
-        h("div", {class: "row"}, h("label", {class: "row"}, this.#copies, texts.copies), this.#scatter));
+      h("div", {class: "panel"}, row(this.#by_clicks),
+        row(h("label", {class: "row"}, this.#copies, texts.copies), this.#scatter));
   }
 
   /** name, gene_names: of the entry */

@@ -5,6 +5,7 @@ import {breeding_summary} from "../breeding/caption";
 import {BreedingFeed} from "../breeding/feed";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, set_text} from "../widgets/dom";
+import {button, row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
 import {BetControls} from "./glass_box_bets";
@@ -41,7 +42,7 @@ export class GlassBoxPanel implements Panel {
   });
   readonly #follow: HTMLInputElement = h("input", {type: "checkbox", checked: true, onchange: () => this.refresh()});
   readonly #play_each: HTMLInputElement = h("input", {type: "checkbox"});
-  readonly #birth = h("button", {class: "button", onclick: () => this.#go_to_birth()}, glass_box_texts.birth);
+  readonly #birth = button(glass_box_texts.birth, () => this.#go_to_birth());
   readonly #messages: Messages;
   readonly #body: HTMLElement;
   readonly #width: Width;
@@ -68,7 +69,8 @@ export class GlassBoxPanel implements Panel {
         class: "panel glass-box",
         onkeydown: (event: KeyboardEvent) => this.#feed.shown && this.#steps.press(event),
       },
-        h("div", {class: "row"}, h("span", {}, glass_box_texts.generation), this.#generation,
+        row(
+          h("span", {}, glass_box_texts.generation), this.#generation,
           check(this.#follow, glass_box_texts.follow, glass_box_texts.follow_help),
           check(this.#bets.chosen, glass_box_texts.bet, glass_box_texts.bet_help),
           check(this.#play_each, glass_box_texts.play_each, glass_box_texts.play_each_help), this.#hold.element,
@@ -159,7 +161,7 @@ class Messages {
 
   constructor(context: PanelContext, try_again: () => void, on_open: (generation: number) => void) {
     this.#origin = new OriginNote(context, on_open);
-    this.#retry = h("button", {class: "button", onclick: try_again}, glass_box_texts.retry);
+    this.#retry = button(glass_box_texts.retry, try_again);
     this.element =
       h("div", {class: "panel"}, this.#summary, this.#error, this.#origin.element, this.#retry, this.#waiting);
   }

@@ -20,6 +20,7 @@ import {css} from "../render/look";
 import {delta_text, gene_text} from "../texts/breeding";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, svg} from "../widgets/dom";
+import {svg_label, svg_line, svg_rect} from "../widgets/svg";
 
 const columns_max = 12; // genes in the table of a descendant; more are drawn as small cells
 
@@ -71,7 +72,7 @@ export class WheelDrawing {
                                    glass_box_texts.narrow_slots(arc.first, arc.last))));
       if (arc.first === arc.last && length > 24) {
         const {x, y} = point_at(centre, middle, (arc.begin + arc.end) / 2);
-        this.element.append(svg("text", {class: "wheel-label", x, y, fill: text_on(colour)}, String(arc.first)));
+        this.element.append(svg_label("wheel-label", [x, y], String(arc.first), {fill: text_on(colour)}));
       }
     }
     this.element.append(this.#pointers);
@@ -118,7 +119,7 @@ export class WheelDrawing {
       const from = point_at(centre, inner, pick.turns), to = point_at(centre, radius, pick.turns);
       parts.push(
         svg("polygon", {class: "pointer", points: points.map(({x, y}) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ")}),
-        svg("line", {class: "pointer-line", x1: from.x, y1: from.y, x2: to.x, y2: to.y}));
+        svg_line("pointer-line", [from.x, from.y, to.x, to.y]));
     }
     if (chosen) {
       const wide = inner > 65;
@@ -127,8 +128,7 @@ export class WheelDrawing {
         glass_box_texts.slot_rank(rank_of(chosen), wide ? record.contender_count : null),
         glass_box_texts.slot_share(slot_of(chosen), wide)
       ];
-      lines.forEach(
-        (line, i) => parts.push(svg("text", {class: "wheel-centre", x: centre, y: centre + 19 * (i - 1)}, line)));
+      lines.forEach((line, i) => parts.push(svg_label("wheel-centre", [centre, centre + 19 * (i - 1)], line)));
     }
     this.#pointers.replaceChildren(...parts);
   }
@@ -180,8 +180,8 @@ function draw_bars(
   const range = glass_box_texts.rank_range(values[0] ?? 0, values[count - 1] ?? 0, count);
   const image = drawing(width, height, glass_box_texts.by_rank(bars.title, range));
   image.append(
-    svg("text", {class: "drawing-title", x: 0, y: 10}, bars.title),
-    svg("text", {class: "drawing-quiet", x: width, y: 10, "text-anchor": "end"}, range));
+    svg_label("drawing-title", [0, 10], bars.title),
+    svg_label("drawing-quiet", [width, 10], range, {"text-anchor": "end"}));
   const columns = Math.min(count, Math.floor(width / 2)), each = width / columns, gap = each > 5 ? 1 : 0;
   for (let i = 0; i < columns; ++i) {
     const first = Math.floor(i * count / columns), end = Math.floor((i + 1) * count / columns);
@@ -189,15 +189,8 @@ function draw_bars(
     const mean = ranks.reduce((sum, rank) => sum + values[rank]!, 0) / ranks.length;
     const y = Math.min(y_of(mean), y_of(0)), middle = i * each + (each - gap) / 2;
     const organism = comparison.organisms[first]!;
-    image.append(svg(
-      "rect", {
-        class: "rank-bar",
-        x: i * each,
-        y,
-        width: each - gap,
-        height: Math.max(y_of(mean), y_of(0)) - y + 1,
-        fill: colour_of(record, first)
-      },
+    image.append(svg_rect(
+      "rank-bar", [i * each, y, each - gap, Math.max(y_of(mean), y_of(0)) - y + 1], {fill: colour_of(record, first)},
       svg(
         "title", {},
         ranks.length === 1 ? contender_text(organism, record.contenders[organism]!, complete) :
@@ -209,7 +202,7 @@ function draw_bars(
       image.append(svg("circle", {class: "picked-dot", cx: middle, cy: y - 5, r: 2.5}));
     }
   }
-  image.append(svg("line", {class: "axis", x1: 0, x2: width, y1: y_of(0), y2: y_of(0)}));
+  image.append(svg_line("axis", [0, y_of(0), width, y_of(0)]));
   return image;
 }
 
@@ -240,20 +233,12 @@ export function draw_picks(
   const each = Math.min(14, width / Math.max(columns.length, 1));
   const image = drawing(width, 20, glass_box_texts.picks_in_order(index, record.pick_count));
   columns.forEach(
-    (column, i) => image.append(svg(
-      "rect", {
-        class: column.rank === null ? "strip-cell empty" : "strip-cell",
-        x: i * each,
-        y: 3,
-        width: each - (each > 4 ? 1 : 0),
-        height: 14,
-        fill: column.rank === null ? null : colour_of(record, column.rank),
-        onclick: () => go_to(column.first),
-      },
+    (column, i) => image.append(svg_rect(
+      column.rank === null ? "strip-cell empty" : "strip-cell", [i * each, 3, each - (each > 4 ? 1 : 0), 14],
+      {fill: column.rank === null ? null : colour_of(record, column.rank), onclick: () => go_to(column.first)},
       svg("title", {}, glass_box_texts.one_pick(column.first)))));
   const now = columns.findIndex((column) => column.first <= index && index <= column.last);
-  image.append(svg(
-    "rect", {class: "strip-current", x: Math.max(0, now * each - 1), y: 1, width: Math.max(each, 2) + 1, height: 18}));
+  image.append(svg_rect("strip-current", [Math.max(0, now * each - 1), 1, Math.max(each, 2) + 1, 18]));
   return image;
 }
 
@@ -272,20 +257,15 @@ export function draw_copies(
   const deviation_y = (off: number): number =>
     zero - Math.min(Math.max(off, -deviation_max), deviation_max) / deviation_max * (lower_bottom - lower_top) / 2;
   const image = drawing(width, complete ? lower_bottom + 4 : bottom + 20, glass_box_texts.copies_label);
-  image.append(svg("text", {class: "drawing-title", x: 0, y: 10}, glass_box_texts.copies_title));
+  image.append(svg_label("drawing-title", [0, 10], glass_box_texts.copies_title));
   const each = right / columns.length, gap = each > 5 ? 1 : 0;
   if (complete) {
     image.append(
-      svg(
-        "rect",
-        {class: "expected-band", x: 0, y: deviation_y(2), width: right, height: deviation_y(-2) - deviation_y(2)}),
-      svg("line", {class: "axis", x1: 0, x2: right, y1: zero, y2: zero}),
-      svg("text", {class: "drawing-title", x: 0, y: lower_top - 12}, glass_box_texts.deviation_title),
-      svg(
-        "text", {class: "drawing-quiet", x: width, y: deviation_y(2), "text-anchor": "end"}, glass_box_texts.plus_two),
-      svg(
-        "text", {class: "drawing-quiet", x: width, y: deviation_y(-2), "text-anchor": "end"},
-        glass_box_texts.minus_two));
+      svg_rect("expected-band", [0, deviation_y(2), right, deviation_y(-2) - deviation_y(2)]),
+      svg_line("axis", [0, zero, right, zero]),
+      svg_label("drawing-title", [0, lower_top - 12], glass_box_texts.deviation_title),
+      svg_label("drawing-quiet", [width, deviation_y(2)], glass_box_texts.plus_two, {"text-anchor": "end"}),
+      svg_label("drawing-quiet", [width, deviation_y(-2)], glass_box_texts.minus_two, {"text-anchor": "end"}));
   }
   columns.forEach((column, i) => {
     const x = i * each, middle = x + (each - gap) / 2;
@@ -295,42 +275,27 @@ export function draw_copies(
                     glass_box_texts.ranks(column.first, column.last)) +
       glass_box_texts.copies(column.copies, column.expected, column.standard_error, complete ? column.deviation : null);
     const group = svg(
-      "g", {}, svg("title", {}, note),
-      svg("rect", {class: "hover-area", x, y: top, width: each, height: (complete ? lower_bottom : bottom) - top}),
-      svg("rect", {
-        class: "rank-bar",
-        x,
-        y: y_of(column.copies),
-        width: each - gap,
-        height: bottom - y_of(column.copies),
-        fill: colour_of(record, column.first)
-      }),
-      svg("line", {
-        class: "error-bar",
-        x1: middle,
-        x2: middle,
-        y1: y_of(column.expected - column.standard_error),
-        y2: y_of(column.expected + column.standard_error)
-      }),
-      svg("line", {class: "expected-line", x1: x, x2: x + each, y1: y_of(column.expected), y2: y_of(column.expected)}));
+      "g", {}, svg("title", {}, note), svg_rect("hover-area", [x, top, each, (complete ? lower_bottom : bottom) - top]),
+      svg_rect(
+        "rank-bar", [x, y_of(column.copies), each - gap, bottom - y_of(column.copies)],
+        {fill: colour_of(record, column.first)}),
+      svg_line(
+        "error-bar",
+        [middle, y_of(column.expected - column.standard_error), middle, y_of(column.expected + column.standard_error)]),
+      svg_line("expected-line", [x, y_of(column.expected), x + each, y_of(column.expected)]));
     if (complete) {
       const from = deviation_y(Math.max(column.deviation, 0)), to = deviation_y(Math.min(column.deviation, 0));
-      group.append(svg("rect", {
-        class: Math.abs(column.deviation) > 2 ? "deviation large" : "deviation",
-        x,
-        y: from,
-        width: each - gap,
-        height: to - from + 1
-      }));
+      group.append(svg_rect(
+        Math.abs(column.deviation) > 2 ? "deviation large" : "deviation", [x, from, each - gap, to - from + 1]));
     }
     image.append(group);
   });
   image.append(
-    svg("line", {class: "axis", x1: 0, x2: right, y1: bottom, y2: bottom}),
-    svg("text", {class: "drawing-quiet", x: 0, y: bottom + 12}, glass_box_texts.rank_label(0)),
-    svg(
-      "text", {class: "drawing-quiet", x: right, y: bottom + 12, "text-anchor": "end"},
-      glass_box_texts.rank_label(comparison.organisms.length - 1)));
+    svg_line("axis", [0, bottom, right, bottom]),
+    svg_label("drawing-quiet", [0, bottom + 12], glass_box_texts.rank_label(0)),
+    svg_label(
+      "drawing-quiet", [right, bottom + 12], glass_box_texts.rank_label(comparison.organisms.length - 1),
+      {"text-anchor": "end"}));
   return image;
 }
 
@@ -346,18 +311,14 @@ export function draw_descendants(
                        glass_box_texts.descendant_of(current, record.descendant_count));
   const part = (begin: number, end: number, kind: string): void => {
     for (let i = begin; i<end; i += gap>0 ? 1 : end - begin) { // narrow cells form one bar
-      image.append(svg(
-        "rect",
-        {class: `strip-cell ${kind}`, x: i * each, y: 3, width: (gap > 0 ? 1 : end - begin) * each - gap, height: 14}));
+      image.append(svg_rect(`strip-cell ${kind}`, [i * each, 3, (gap > 0 ? 1 : end - begin) * each - gap, 14]));
     }
   };
   part(0, Math.min(record.elite_count, count), "elite");
   part(record.elite_count, Math.min(record.survivor_count, count), "survivor");
   part(record.survivor_count, record.descendant_count, "child");
   if (current !== null) {
-    image.append(svg(
-      "rect",
-      {class: "strip-current", x: Math.max(0, current * each - 1), y: 1, width: Math.max(each, 2) + 1, height: 18}));
+    image.append(svg_rect("strip-current", [Math.max(0, current * each - 1), 1, Math.max(each, 2) + 1, 18]));
   }
   image.addEventListener(
     "click",

@@ -4,6 +4,8 @@ import type {BreedingKey} from "../breeding/record";
 import type {GenerationStatistics} from "../core/protocol";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, svg} from "../widgets/dom";
+import {hint} from "../widgets/form";
+import {svg_line, svg_rect} from "../widgets/svg";
 
 const genes_shown_max = 12;
 const parts = ["selection", "transmission", "migration", "change"] as const;
@@ -30,7 +32,7 @@ export function gene_parts(generation: number, gene_names: readonly string[], ne
   const most = Math.max(1e-12, ...shown.flatMap((account) => parts.map((part) => Math.abs(account[part]))));
   return [
     h("p", {}, glass_box_texts.account(generation)),
-    ...(is_limited ? [h("p", {class: "hint"}, glass_box_texts.account_limited(shown.length, accounts.length))] : []),
+    ...(is_limited ? [hint(glass_box_texts.account_limited(shown.length, accounts.length))] : []),
     ...shown.map((account) => draw_account(account, is_limited ? null : most)),
   ];
 }
@@ -40,16 +42,14 @@ export function gene_parts(generation: number, gene_names: readonly string[], ne
 function draw_account(account: GeneChangeOfMean, most: number|null): HTMLElement {
   const end = most ?? Math.max(1e-12, ...parts.map((part) => Math.abs(account[part])));
   return h(
-    "section", {class: "organism-part account"}, h("p", {}, account_text(account)),
-    h("p", {class: "hint"}, reason_text(account)),
+    "section", {class: "organism-part account"}, h("p", {}, account_text(account)), hint(reason_text(account)),
     h("div", {class: "account-bars", "aria-hidden": "true"}, ...parts.flatMap((part) => {
       const value = account[part], width = Math.abs(value) / end * 50;
       return [
         h("span", {class: "hint"}, glass_box_texts.account_parts[part]),
         svg(
           "svg", {class: "account-bar", viewBox: "0 0 100 10", preserveAspectRatio: "none"},
-          svg("rect", {class: part, x: value < 0 ? 50 - width : 50, y: 1, width, height: 8}),
-          svg("line", {class: "axis", x1: 50, x2: 50, y1: 0, y2: 10}))
+          svg_rect(part, [value < 0 ? 50 - width : 50, 1, width, 8]), svg_line("axis", [50, 0, 50, 10]))
       ];
     })));
 }

@@ -2,6 +2,7 @@
 import {GenerationHold} from "../breeding/generation_hold";
 import {glass_box_texts} from "../texts/glass_box";
 import {h} from "../widgets/dom";
+import {check} from "../widgets/form";
 import type {PanelContext} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
 
@@ -24,7 +25,7 @@ export class HoldControl {
         changed();
       }
     });
-    this.element = h("label", {class: "check", title: glass_box_texts.hold_help}, this.#held, glass_box_texts.hold);
+    this.element = check(this.#held, glass_box_texts.hold, glass_box_texts.hold_help);
   }
 
   /** Sends the command that the hold needs now. */

@@ -7,6 +7,7 @@ import type {Moment} from "../breeding/stepper";
 import {genes_of} from "../organism/genes";
 import {glass_box_texts} from "../texts/glass_box";
 import {h} from "../widgets/dom";
+import {hint} from "../widgets/form";
 import type {ViewedWorld} from "../world/world";
 import {
   descendants_legend,
@@ -58,7 +59,7 @@ export class Stage {
         return [
           this.#draw_pick(at),
           draw_picks(record, moment.index, width, (index) => this.#go_to("picking", index)),
-          h("p", {class: "hint"}, glass_box_texts.picks_legend),
+          hint(glass_box_texts.picks_legend),
         ];
       case "breeding": {
         const descendant = record.descendants[moment.index];
@@ -113,5 +114,5 @@ function migrant_parts(record: BreedingRecord): Node[] {
       migrant ? [glass_box_texts.migrant(organism, migrant.organism ?? 0, migrant.island ?? 0)] : []);
   return migrants.length === 0 ?
     [] :
-    [h("p", {class: "hint"}, glass_box_texts.migrants(migrants.slice(0, migrants_shown_max), migrants.length))];
+    [hint(glass_box_texts.migrants(migrants.slice(0, migrants_shown_max), migrants.length))];
 }

@@ -2,6 +2,7 @@
 import {speed_max, speed_min, Stepper} from "../breeding/stepper";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, set_text} from "../widgets/dom";
+import {row} from "../widgets/form";
 
 export class StepControls {
   readonly element: HTMLElement;
@@ -48,8 +49,7 @@ export class StepControls {
           button("<", texts.back, () => stepper.back()), this.#play, button(">", texts.forward, () => stepper.step()),
           button(">>", texts.next_stage, () => stepper.next_stage()),
           button(">|", texts.to_end, () => stepper.go_to(stepper.last_position))),
-        h("div", {class: "row"}, this.#position, this.#position_text),
-        h("div", {class: "row"}, this.#speed, this.#speed_text));
+        row(this.#position, this.#position_text), row(this.#speed, this.#speed_text));
     this.#set_speed();
   }
 

@@ -7,6 +7,7 @@ import {deviation_of, type Prediction, predictions, selection_of} from "../breed
 import {glass_box_texts} from "../texts/glass_box";
 import {three_digits, with_separators} from "../texts/numbers";
 import {h} from "../widgets/dom";
+import {hint} from "../widgets/form";
 import {draw_copies} from "./glass_box_drawings";
 
 const table_rows_max = 200;
@@ -17,7 +18,7 @@ export function theory_parts(
   if (!comparison) {
     return [
       law,
-      h("p", {class: "hint"},
+      hint(
         record.contender_count > rows_kept_max ?
           glass_box_texts.too_many(rows_kept_max) :
           glass_box_texts.received(record.contenders.length, record.contender_count))
@@ -46,7 +47,7 @@ function prediction_part(prediction: Prediction, complete: boolean): HTMLElement
       observed === null ? glass_box_texts.expected(name, expected) :
                           glass_box_texts.expected_and_observed(name, expected, glass_box_texts.value(observed, unit))),
     complete && off !== null && h("p", {}, glass_box_texts.standard_errors(off)),
-    h("p", {class: "hint"}, glass_box_texts.source(sentence, source)));
+    hint(glass_box_texts.source(sentence, source)));
 }
 
 function organism_table(comparison: Comparison, copies: readonly number[], complete: boolean): HTMLElement {
@@ -66,5 +67,5 @@ function organism_table(comparison: Comparison, copies: readonly number[], compl
       h("table", {class: "table", "aria-label": glass_box_texts.table}, h("thead", {}, h("tr", {}, ...heads)),
         h("tbody", {}, ...rows))),
     comparison.organisms.length > table_rows_max &&
-      h("p", {class: "hint"}, glass_box_texts.table_limited(table_rows_max, comparison.organisms.length)));
+      hint(glass_box_texts.table_limited(table_rows_max, comparison.organisms.length)));
 }

@@ -1,9 +1,13 @@
-// The panels that need most code, and the dialog for new worlds. They are a file of their own, panels.js, which the
-// page loads when one of them is first shown.
+// The panels that need most code, the dialogs, and evolution. They are a file of their own, panels.js, which the page
+// loads when one of them is first shown.
+export {Evolution} from "./evolution";
 export {FamilyPanel} from "./family";
 export {FreezerPanel} from "./freezer";
 export {GlassBoxPanel} from "./glass_box";
+export {Help} from "./help";
 export {new_world_dialog} from "./new_world";
 export {OrganismPanel} from "./organism";
 export {PhysicsPanel} from "./physics";
 export {PlotsPanel} from "./plots";
+export {SecondWorld} from "./second_world";
+export {ViewPanel} from "./view";

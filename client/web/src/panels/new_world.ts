@@ -15,6 +15,7 @@ import {new_world_texts as texts} from "../texts/new_world";
 import {capitalised} from "../texts/numbers";
 import {Dialog, set_attribute, set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {button, check, hint, labelled, row} from "../widgets/form";
 import {open_button} from "../widgets/files";
 import {gene_problem, name_characters_max, name_of_file, name_problem, unused_name} from "../world/names";
 
@@ -125,25 +126,18 @@ class NewWorldDialog {
   #form(): HTMLElement {
     const [open, field] =
       open_button(texts.open_file, ".json,application/json,text/plain", false, (files) => void this.#read(files[0]));
-    const label = (control: HTMLElement, text: string): HTMLLabelElement => {
-      const made = h("label", {}, text);
-      made.htmlFor = control.id;
-      return made;
-    };
     const submit = (event: Event): void => {
       event.preventDefault();
       void this.#send(false);
     };
     return h(
       "form", {class: "panel", onsubmit: submit}, this.#choices,
-      h("div", {class: "labelled"}, label(this.#name, texts.name), this.#name, label(this.#seed, texts.seed),
-        this.#seed, label(this.#population, texts.population), this.#population),
-      this.#population_help, h("p", {class: "hint"}, texts.seed_help),
-      h("details", {}, h("summary", {}, texts.text), h("p", {class: "hint"}, texts.text_help), this.#text,
-        h("div", {class: "row"}, open, field)),
-      h("label", {class: "check"}, this.#beside, texts.beside),
-      h("div", {class: "row dialog-end"}, this.#error,
-        h("button", {type: "button", class: "button", onclick: () => this.#dialog.close()}, common_texts.cancel),
+      h("div", {class: "labelled"}, labelled(texts.name, this.#name), this.#name, labelled(texts.seed, this.#seed),
+        this.#seed, labelled(texts.population, this.#population), this.#population),
+      this.#population_help, hint(texts.seed_help),
+      h("details", {}, h("summary", {}, texts.text), hint(texts.text_help), this.#text, row(open, field)),
+      check(this.#beside, texts.beside),
+      h("div", {class: "row dialog-end"}, this.#error, button(common_texts.cancel, () => this.#dialog.close()),
         this.#create, this.#create_and_run));
   }
 

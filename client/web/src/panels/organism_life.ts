@@ -5,6 +5,7 @@ import type {OrganismHistory} from "../organism/history";
 import {choice_text, fate_text} from "../organism/texts";
 import {organism_texts as texts} from "../texts/organism";
 import {h, set_text, svg} from "../widgets/dom";
+import {button, check, row} from "../widgets/form";
 import type {ViewedWorld} from "../world/world";
 
 const curve_width = 368, curve_height = 64;
@@ -30,15 +31,14 @@ export class OrganismLife {
   readonly elements: readonly HTMLElement[];
 
   constructor(actions: LifeActions) {
-    this.#back =
-      h("button", {class: "button", title: texts.back_help, onclick: () => actions.back_to_live()}, texts.back);
-    this.#family = h("button", {class: "button", onclick: () => actions.open_family()}, texts.family);
+    this.#back = button(texts.back, () => actions.back_to_live(), {title: texts.back_help});
+    this.#family = button(texts.family, () => actions.open_family());
     this.#follow = h("input", {type: "checkbox", onchange: () => actions.set_follow(this.#follow.checked)});
-    this.#follow_row = h("label", {class: "check"}, this.#follow, texts.follow);
-    const deselect = h("button", {class: "button", onclick: () => actions.deselect()}, texts.deselect);
+    this.#follow_row = check(this.#follow, texts.follow);
+    const deselect = button(texts.deselect, () => actions.deselect());
     this.elements = [
       h("div", {class: "row organism-head"}, this.#heading, this.#back), this.#fate, this.#action,
-      h("div", {class: "row"}, this.#follow_row, this.#family, deselect), h("div", {}, this.#eaten, this.#body)
+      row(this.#follow_row, this.#family, deselect), h("div", {}, this.#eaten, this.#body)
     ];
   }
 

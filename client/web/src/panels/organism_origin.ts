@@ -4,6 +4,7 @@ import type {OrganismHistory} from "../organism/history";
 import {child_text, parents_text, picks_text} from "../organism/texts";
 import {organism_texts as texts} from "../texts/organism";
 import {h, set_text} from "../widgets/dom";
+import {button, row} from "../widgets/form";
 import type {PanelContext} from "../world/panel_context";
 import {OriginNote} from "./origin_note";
 
@@ -24,7 +25,7 @@ export class OrganismOrigin {
   readonly #parents = h("p", {});
   readonly #parent_rows = h("div", {class: "organism-parents"});
   readonly #own_picks = h("p", {});
-  readonly #show_picks = h("button", {class: "button", onclick: () => this.#open_own_picks()}, texts.show_picks);
+  readonly #show_picks = button(texts.show_picks, () => this.#open_own_picks());
   readonly #problem = h("p", {class: "error", role: "status"});
   readonly #note: OriginNote;
   readonly element: HTMLElement;
@@ -36,7 +37,7 @@ export class OrganismOrigin {
     this.#note = new OriginNote(panel, () => undefined);
     this.element =
       h("section", {class: "panel organism-part"}, h("h3", {}, texts.why), this.#parent_rows, this.#parents,
-        this.#own_picks, h("div", {class: "row"}, this.#show_picks), this.#problem, this.#note.element);
+        this.#own_picks, row(this.#show_picks), this.#problem, this.#note.element);
   }
 
   update(history: OrganismHistory): void {
@@ -71,20 +72,12 @@ export class OrganismOrigin {
     const origin = picks?.migrant ?? {island, organism: parent};
     return h(
       "div", {class: "row"},
-      h("button", {
-        class: "button",
-        disabled: picks === null && this.#context.problem() === "",
-        title: texts.go_to_parent_help,
-        onclick: () => this.#context.go_to(generation, origin.island, origin.organism),
-      },
-        texts.go_to_parent(parent)),
-      h("button", {
-        class: "button",
-        disabled: picks === null,
-        title: texts.why_parent_help,
-        onclick: () => this.#context.open_picks(generation, island, parent),
-      },
-        texts.why_parent(parent)));
+      button(
+        texts.go_to_parent(parent), () => this.#context.go_to(generation, origin.island, origin.organism),
+        {disabled: picks === null && this.#context.problem() === "", title: texts.go_to_parent_help}),
+      button(
+        texts.why_parent(parent), () => this.#context.open_picks(generation, island, parent),
+        {disabled: picks === null, title: texts.why_parent_help}));
   }
 
   #open_own_picks(): void {
@@ -118,13 +111,9 @@ export class OrganismOffspring {
     const buttons = (children ?? [])
                       .slice(0, children_shown_max)
                       .map(
-                        (child) =>
-                          h("button", {
-                            class: "button organism-child",
-                            title: texts.child_help(child.id, next),
-                            onclick: () => this.#context.go_to(next, place.island, child.id),
-                          },
-                            child_text(child)));
+                        (child) => button(
+                          child_text(child), () => this.#context.go_to(next, place.island, child.id),
+                          {class: "button organism-child", title: texts.child_help(child.id, next)}));
     const more = count - buttons.length;
     const hint = !has_bred ? texts.offspring_later :
       children_left_out    ? texts.offspring_too_many :

@@ -20,7 +20,7 @@ export interface ExchangeView {
   forgotten(): void;
   /** The state has changed, after an answer of the server. */
   answered(): void;
-  /** The server has refused a change: edits.violation() states why. */
+  /** The server has refused a change: its violation states why. */
   refused(): void;
   /** Edits were made while a change was being sent. */
   edited_since(): void;
@@ -133,7 +133,7 @@ export class ParameterExchange {
     if (this.edits.busy) {
       throw new Error(undo_texts.busy);
     }
-    const answer = await this.#send(this.edits[verb](this.world));
+    const answer = await this.#send(this.edits.reverse(this.world, verb));
     if (answer === "refused") {
       throw new Error(this.edits.problem);
     }

@@ -67,7 +67,7 @@ export class ParameterList {
     const {edits} = this.#context;
     const rejected = this.#groups.filter(({is_extra}) => !is_extra)
                        .flatMap((group) => group.rows.map((row) => ({group, row})))
-                       .filter(({row}) => edits.violation(row.parameter) !== null);
+                       .filter(({row}) => edits.parameters[row.parameter]!.violation !== null);
     for (const {group, row} of rejected) {
       group.element.hidden = row.element.hidden = false;
       group.element.open = true;

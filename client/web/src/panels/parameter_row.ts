@@ -2,6 +2,7 @@
 import type {ParameterDescription, ParameterValue} from "../core/protocol";
 import {effect_texts, parameter_texts as texts} from "../texts/parameters";
 import {h, set_text} from "../widgets/dom";
+import {type EditedParameter, planned_values} from "../world/parameter_edits";
 import {number_of, value_text} from "../world/parameter_values";
 import {allowed_text, is_number, label_of, label_of_choice, unit_text} from "../world/parameters";
 
@@ -69,11 +70,10 @@ export class ParameterRow {
 
   /** Shows the present state. */
   update(may: boolean): void {
-    const {edits} = this.#context, i = this.parameter, violation = edits.violation(i);
+    const {is_default, violation, edit} = this.#state;
     this.#control.update(may, violation !== null);
-    this.element.classList.toggle("parameter-edited", edits.is_edited(i));
+    this.element.classList.toggle("parameter-edited", edit !== null);
     this.element.classList.toggle("parameter-refused", violation !== null || this.typing_problem !== "");
-    const is_default = edits.is_default(i);
     set_text(this.#mark, is_default ? "" : " •");
     this.#default_button.hidden = is_default || !may;
     set_text(this.#remarks, this.#remarks_text());
@@ -96,14 +96,18 @@ export class ParameterRow {
     this.#control.main.focus();
   }
 
+  get #state(): EditedParameter {
+    return this.#context.edits.parameters[this.parameter]!;
+  }
+
   #remarks_text(): string {
-    const {edits} = this.#context, i = this.parameter;
-    const client = edits.client_of_last_change(i), planned = edits.planned_values(i);
+    const {edit, pending, requested, value, shown, client_of_last_change: client} = this.#state;
+    const planned = planned_values(this.#context.edits, this.#about.name);
     return [
-      this.#unit(edits.shown(i)),
-      edits.is_edited(i)    ? texts.was(value_text(edits.requested_value(i))) :
-        edits.is_pending(i) ? texts.still(value_text(edits.current_value(i))) :
-                              "",
+      this.#unit(shown),
+      edit !== null      ? texts.was(value_text(requested)) :
+        pending !== null ? texts.still(value_text(value)) :
+                           "",
       client === "" ? "" : texts.set_by(client),
       planned.length === 0 ? "" : texts.planned(planned),
     ].filter((part) => part !== "")
@@ -124,11 +128,10 @@ export class ParameterRow {
     if (this.#help.hidden) {
       return;
     }
-    const {edits} = this.#context, about = this.#about, i = this.parameter;
-    const current = value_text(edits.current_value(i));
+    const about = this.#about, {pending, requested, value} = this.#state, current = value_text(value);
     const facts = texts.facts(
       allowed_text(about) + (about.unit ? ` ${about.unit}` : ""), value_text(about.default_value ?? {}),
-      edits.is_pending(i) ? texts.now_and_then(current, value_text(edits.requested_value(i))) : current);
+      pending !== null ? texts.now_and_then(current, value_text(requested)) : current);
     if (this.#described === facts) {
       return;
     }

@@ -57,7 +57,7 @@ export class ParameterControl {
 
   /** Shows the present value. */
   update(may: boolean, is_refused: boolean): void {
-    const shown = this.#context.edits.shown(this.#parameter), title = may ? "" : this.#context.why_not;
+    const shown = this.#context.edits.parameters[this.#parameter]!.shown, title = may ? "" : this.#context.why_not;
     for (const control of [this.main, ...(this.slider ? [this.slider] : [])]) {
       set_enabled(control, may, title);
       control.setAttribute("aria-invalid", String(is_refused || this.typing_problem !== ""));
@@ -197,7 +197,7 @@ export class ParameterControl {
     if (up || down) {
       event.preventDefault();
       event.stopPropagation();
-      const number = number_of(this.#context.edits.shown(this.#parameter));
+      const number = number_of(this.#context.edits.parameters[this.#parameter]!.shown);
       this.set(value_of(this.#about, stepped(this.#about, number, up, event.key.startsWith("Page"))));
     }
   }

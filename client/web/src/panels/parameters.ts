@@ -7,6 +7,7 @@ import {parameters_texts as texts} from "../texts/parameters";
 import {undo_texts} from "../texts/undo";
 import {set_enabled} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {button, check, row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import {undo} from "../world/undo_command";
 
@@ -25,15 +26,11 @@ export class ParametersPanel implements Panel {
   readonly #list: ParameterList;
   readonly #when: ParameterWhen;
   readonly #planned: PlannedChanges;
-  readonly #apply_button =
-    h("button", {class: "button button-primary", type: "button", onclick: () => this.#apply()}, texts.apply);
+  readonly #apply_button = button(texts.apply, () => this.#apply(), {class: "button button-primary"});
   readonly #discard_button =
-    h("button", {class: "button", type: "button", title: texts.discard_help, onclick: () => this.#discard()},
-      texts.discard);
-  readonly #undo_button =
-    h("button", {class: "button", type: "button", onclick: () => void undo(this.#context, "undo")}, undo_texts.undo);
-  readonly #redo_button =
-    h("button", {class: "button", type: "button", onclick: () => void undo(this.#context, "redo")}, undo_texts.redo);
+    button(texts.discard, () => this.#discard(), {title: texts.discard_help});
+  readonly #undo_button = button(undo_texts.undo, () => void undo(this.#context, "undo"));
+  readonly #redo_button = button(undo_texts.redo, () => void undo(this.#context, "redo"));
   readonly #at_once = h("input", {type: "checkbox", onchange: () => this.touch()});
   readonly #reason = h("p", {class: "warning"});
   readonly #problem = h("p", {class: "error", role: "alert"});
@@ -55,10 +52,9 @@ export class ParametersPanel implements Panel {
     this.element =
       h("div", {class: "panel parameters"}, this.#reason,
         h("div", {class: "parameters-head"},
-          h("div", {class: "row"}, this.#apply_button, this.#discard_button, this.#undo_button, this.#redo_button),
-          this.#problem, this.#status),
-        h("div", {class: "row"}, this.#when.element,
-          h("label", {class: "check", title: texts.at_once_help}, this.#at_once, texts.at_once)),
+          row(this.#apply_button, this.#discard_button, this.#undo_button, this.#redo_button), this.#problem,
+          this.#status),
+        row(this.#when.element, check(this.#at_once, texts.at_once, texts.at_once_help)),
         this.#planned.element, this.#list.search, this.#list.element, this.#list.nothing_found);
     context.server.on_event((event) => {
       this.#changed = this.#exchange.take_event(event) || this.#changed;
@@ -126,7 +122,7 @@ export class ParametersPanel implements Panel {
   }
 
   #discard(): void {
-    this.edits.revert_all();
+    this.edits.revert();
     this.#list.forget();
     this.touch();
   }

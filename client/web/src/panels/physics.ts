@@ -8,6 +8,7 @@ import type {TickVerdict} from "../plots/motion";
 import {Plot} from "../plots/plot";
 import {physics_texts as texts} from "../texts/physics";
 import {h, set_text} from "../widgets/dom";
+import {hint} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 
 const poll_ms = 250, retry_ms = 5000; // after a refused request
@@ -40,7 +41,7 @@ export class PhysicsPanel implements Panel {
     this.#context = context;
     this.element =
       h("div", {class: "panel physics"}, this.#problem, this.#verdict, this.#bodies,
-        ...this.#plots.map(({plot}) => plot.element), this.#details, h("p", {class: "hint"}, texts.integrators));
+        ...this.#plots.map(({plot}) => plot.element), this.#details, hint(texts.integrators));
     this.#show();
   }
 

@@ -4,6 +4,7 @@ import {common_texts} from "../texts/common";
 import {planned_texts as texts} from "../texts/parameters";
 import {actor_text} from "../texts/users";
 import {h, set_text} from "../widgets/dom";
+import {button} from "../widgets/form";
 import {when_text} from "../world/parameter_edits";
 import {value_text} from "../world/parameter_values";
 
@@ -37,14 +38,7 @@ export class PlannedChanges {
     const text = texts.change(when_text(change), (change.parameters ?? []).map(assigned), actor_text(change.by));
     return h(
       "li", {}, h("span", {class: "grow"}, text),
-      h("button", {
-        class: "button",
-        type: "button",
-        disabled: why_not !== "",
-        title: why_not || null,
-        onclick: () => this.#cancel(change)
-      },
-        common_texts.cancel));
+      button(common_texts.cancel, () => this.#cancel(change), {disabled: why_not !== "", title: why_not || null}));
   }
 }
 

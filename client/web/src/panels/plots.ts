@@ -3,7 +3,6 @@
 import {marks_of} from "../plots/change_marks";
 import {Comparison} from "../plots/comparison";
 import {extinctions, figure_of, quantities} from "../plots/figures";
-import type {Subject} from "../plots/figures";
 import {history_csv} from "../plots/history_csv";
 import {HistoryTable} from "../plots/history_table";
 import {Plot} from "../plots/plot";
@@ -11,6 +10,7 @@ import {plot_texts} from "../texts/plot";
 import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {h, set_text} from "../widgets/dom";
 import {accept_drops, save_file} from "../widgets/files";
+import {row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import {QuantityTabs, ScopeChoice} from "./plots_choices";
 import {CompareChoice} from "./plots_compare";
@@ -33,7 +33,10 @@ export class PlotsPanel implements Panel {
   readonly #explanation = h("p", {class: "hint"});
   readonly #content = h("div", {class: "panel"}, this.#genes.element, this.#explanation);
   readonly #tabs = new QuantityTabs(this.#content, () => this.#rebuild());
-  readonly #plot = new Plot({height: plot_height, on_click: (generation) => void this.#show_past(generation)});
+  readonly #plot = new Plot({
+    height: plot_height,
+    on_click: (generation) => void this.#context.attempt(() => this.#context.world().past.show(generation))
+  });
   readonly #histogram = new GeneHistogram();
   readonly #known = h("p", {class: "hint"});
   readonly #table = new HistoryTable();
@@ -56,8 +59,8 @@ export class PlotsPanel implements Panel {
     };
     this.element =
       h("div", {class: "panel plots"}, this.#compare.element, this.#scope.element, this.#tabs.element, this.#content,
-        h("div", {class: "row"}, button(texts.fit, fit, texts.fit_help),
-          button(texts.save_csv, () => this.#save_csv(), texts.save_csv_help),
+        row(
+          button(texts.fit, fit, texts.fit_help), button(texts.save_csv, () => this.#save_csv(), texts.save_csv_help),
           button(texts.save_png, () => void this.#save_png(), texts.save_png_help(image_width, image_height)),
           this.#known));
     accept_drops(this.element, (files) => this.#compare.take(files));
@@ -69,10 +72,20 @@ export class PlotsPanel implements Panel {
   }
 
   refresh(): void {
-    if (!this.#context.world().name) {
+    const world = this.#context.world();
+    if (!world.name) {
       return;
     }
-    this.#follow();
+    const run = `${world.feed.pane} ${world.name} ${this.#run_id()}`;
+    if (run !== this.#run) {
+      this.#run = run;
+      this.#drawn = "";
+      this.#plot.fit();
+    }
+    this.#table.set_history(world.history.generations);
+    this.#compare.update(world.name);
+    this.#scope.update(this.#table.island_count);
+    this.#need_population();
     const wait = this.#next_build_ms - performance.now();
     if (wait > 0) {
       if (this.#timer === 0) {
@@ -98,36 +111,13 @@ export class PlotsPanel implements Panel {
 
   // ---- data ----
 
-  #follow(): void {
-    const world = this.#context.world(), run = `${world.feed.pane} ${world.name} ${this.#run_id()}`;
-    if (run !== this.#run) {
-      this.#run = run;
-      this.#drawn = "";
-      this.#plot.fit();
-    }
-    this.#table.set_history(world.history.generations);
-    this.#compare.update(world.name);
-    this.#scope.update(this.#table.island_count);
-    this.#need_population();
-  }
-
   #run_id(): string {
     return this.#context.server.world(this.#context.world().name)?.run_id ?? "";
-  }
-
-  #subject(): Subject {
-    const {name, history: {changes}, gene_names} = this.#context.world(), {island} = this.#scope;
-    const marks = [...marks_of(changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
-    return {table: this.#table, island, name, gene_names, changes: marks};
   }
 
   #need_population(): void {
     this.#histogram.need(
       this.#context.world(), this.#is_visible && this.#tabs.chosen === "genes" && this.#genes.gene !== "");
-  }
-
-  async #show_past(generation: number): Promise<void> {
-    await this.#context.attempt(() => this.#context.world().past.show(generation));
   }
 
   // ---- plots ----
@@ -149,11 +139,17 @@ export class PlotsPanel implements Panel {
     ]);
     if (description !== this.#drawn) {
       this.#drawn = description;
-      const subject = this.#subject(), other = this.#comparison.subject(island);
+      const {name, history: {changes}, gene_names} = world;
+      const marks = [...marks_of(changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
+      const subject = {table: this.#table, island, name, gene_names, changes: marks},
+            other = this.#comparison.subject(island);
       const genes = of_genes ? this.#genes.update(world, quantity, subject) : [];
       const gene = of_genes ? this.#genes.gene : "";
+      const empty = !world.history.is_complete                       ? texts.loading :
+        quantity === "selection" && this.#table.generation_count > 0 ? texts.from_second :
+                                                                       texts.none_ended;
       const content = figure_of({quantity, subject, other, genes, gene, window});
-      this.#plot.set_content({...content, note_end: plot_texts.click_shows, empty: this.#empty_text()});
+      this.#plot.set_content({...content, note_end: plot_texts.click_shows, empty});
       set_text(
         this.#explanation,
         quantity !== "selection" ? "" :
@@ -161,19 +157,10 @@ export class PlotsPanel implements Panel {
                                    texts.selection_of_one);
       set_text(
         this.#known,
-        this.#table.generation_count === 0 ? "" : texts.known(this.#table.generation_count, this.#last_generation()));
+        this.#table.generation_count === 0 ? "" :
+                                             texts.known(this.#table.generation_count, this.#table.last_generation));
     }
     this.#histogram.update(world, quantity === "genes" ? this.#genes.gene : "");
-  }
-
-  #empty_text(): string {
-    return !this.#context.world().history.is_complete                       ? texts.loading :
-      this.#tabs.chosen === "selection" && this.#table.generation_count > 0 ? texts.from_second :
-                                                                              texts.none_ended;
-  }
-
-  #last_generation(): number {
-    return this.#table.column(null, "generation").at(-1) ?? 0;
   }
 
   // ---- files ----
@@ -181,7 +168,7 @@ export class PlotsPanel implements Panel {
   /** "evod-default-3f2a9c01-fitness-generation-120" */
   #file_name(what: string): string {
     return `evod-${this.#context.world().name}-${this.#run_id().slice(0, 8)}-${what}-generation-${
-      this.#last_generation()}`;
+      this.#table.last_generation}`;
   }
 
   #save_csv(): void {

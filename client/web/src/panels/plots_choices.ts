@@ -7,6 +7,7 @@ import {plot_texts} from "../texts/plot";
 import {plots_panel_texts as texts, quantity_texts} from "../texts/plots_panel";
 import {set_options} from "../widgets/controls";
 import {h} from "../widgets/dom";
+import {row} from "../widgets/form";
 
 const windows = [1, 5, 10, 20, 50, 100]; // generations of a running mean; 1: none
 const window_default = 10;
@@ -83,7 +84,7 @@ export class ScopeChoice {
           h("option", {value: window, selected: window === window_default},
             window === 1 ? texts.each_generation : plot_texts.mean_of(window))));
     this.#island = h("select", {class: "field", "aria-label": texts.island, hidden: true, onchange: on_change});
-    this.element = h("div", {class: "row"}, this.#smooth, this.#island);
+    this.element = row(this.#smooth, this.#island);
   }
 
   /** Generations of the running mean; 1: none. */

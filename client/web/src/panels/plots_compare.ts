@@ -5,6 +5,7 @@ import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {open_button} from "../widgets/files";
+import {button} from "../widgets/form";
 import type {Server} from "../world/server";
 
 const file_value = "file", world_value = "world "; // of options
@@ -18,7 +19,7 @@ export class CompareChoice {
   readonly #run =
     h("select",
       {class: "field grow", "aria-label": texts.run, onchange: () => this.#comparison.choose_run(this.#run_index())});
-  readonly #remove = h("button", {class: "button", type: "button", onclick: () => this.#remove_file()}, texts.remove);
+  readonly #remove = button(texts.remove, () => this.#remove_file());
   readonly #file_row = h("div", {class: "row plots-file", hidden: true}, this.#file_name, this.#run, this.#remove);
   readonly #problem = h("p", {class: "error", role: "alert"});
 

@@ -5,6 +5,7 @@ import {run_texts as texts} from "../texts/run";
 import {outcome_words, state_word} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {hint, Question, row} from "../widgets/form";
 
 import type {Panel, PanelContext} from "../world/panel_context";
 
@@ -29,7 +30,7 @@ export class RunPanel implements Panel {
   #step: HTMLButtonElement;
   #run: HTMLButtonElement;
   #reset: HTMLButtonElement;
-  #confirm: HTMLElement;
+  #confirm: Question;
   #question = h("p", {});
 
   readonly #context: PanelContext;
@@ -45,16 +46,12 @@ export class RunPanel implements Panel {
       texts.run, notify,
       () => this.#with_number(texts.of_generations, this.#generations, (count) => context.world().control.run(count)));
     this.#reset = guarded_button(texts.reset, notify, () => this.#ask());
-    this.#confirm =
-      h("div", {class: "confirm", hidden: true}, this.#question,
-        h("div", {class: "row"},
-          h("button", {type: "button", class: "button button-danger", onclick: () => this.#do_reset()}, texts.do_reset),
-          h("button", {type: "button", class: "button", onclick: () => this.#close()}, common_texts.cancel)));
+    this.#confirm = new Question({before: [this.#question]}, texts.do_reset, () => this.#do_reset(), () => this.#reset);
     this.element =
-      h("div", {class: "panel panel-run"}, this.#state, this.#waits, this.#where, h("div", {class: "row"}, this.#one),
-        h("div", {class: "row"}, this.#ticks, this.#step), h("div", {class: "row"}, this.#generations, this.#run),
-        this.#count_error, h("h3", {}, texts.reset_title), h("p", {class: "hint"}, texts.reset_about),
-        h("div", {class: "row"}, this.#seed, this.#reset), this.#seed_error, this.#confirm);
+      h("div", {class: "panel panel-run"}, this.#state, this.#waits, this.#where, row(this.#one),
+        row(this.#ticks, this.#step), row(this.#generations, this.#run), this.#count_error,
+        h("h3", {}, texts.reset_title), hint(texts.reset_about), row(this.#seed, this.#reset), this.#seed_error,
+        this.#confirm.element);
   }
 
   refresh(): void {
@@ -88,7 +85,7 @@ export class RunPanel implements Panel {
     set_allowed(this.#reset, why_reset);
     this.#seed.disabled = why_reset !== "";
     if (why_reset) {
-      this.#confirm.hidden = true;
+      this.#confirm.element.hidden = true;
     }
   }
 
@@ -113,19 +110,13 @@ export class RunPanel implements Panel {
     set_attribute(this.#seed, "aria-invalid", wrong ? "true" : null);
     if (!wrong) {
       set_text(this.#question, texts.ask_reset(this.#context.world().name, text));
-      this.#confirm.hidden = false;
-      this.#confirm.querySelector("button")!.focus();
+      this.#confirm.open();
     }
-  }
-
-  #close(): void {
-    this.#confirm.hidden = true;
-    this.#reset.focus();
   }
 
   #do_reset(): void {
     const world = this.#context.world(), seed = this.#seed.value.trim();
-    this.#close();
+    this.#confirm.close();
     this.#attempt(
       () => world.server.request("reset_world", {world: world.name, ...(seed ? {seed: BigInt(seed)} : {})}));
   }

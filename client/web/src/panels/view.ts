@@ -1,9 +1,11 @@
 // View panel: selects what the island shows, and how. The same switches in the same order as in evoview
 // (client/viewer/panels/view_panel.cpp).
 import type {Look} from "../core/messages";
+import {panels_texts} from "../texts/panels";
 import {view_texts as texts} from "../texts/view";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {check, hint} from "../widgets/form";
 import {default_look} from "../render/look";
 import type {Panel, PanelContext} from "../world/panel_context";
 
@@ -20,7 +22,7 @@ function options(names: Names): {value: string; text: string}[] {
 
 export class ViewPanel implements Panel {
   readonly name = "view";
-  readonly title = texts.title;
+  readonly title = panels_texts.view;
   readonly element: HTMLElement;
   readonly #skin = this.#select(
     (skin) => this.#set(default_look(skin as Look["skin"], this.#look.background, this.#look.interpolate)));
@@ -39,15 +41,15 @@ export class ViewPanel implements Panel {
   };
   readonly #follow: HTMLInputElement =
     h("input", {type: "checkbox", onchange: () => this.#context.world().selection.set_follow(this.#follow.checked)});
-  readonly #follow_row = h("label", {class: "check"}, this.#follow, texts.follow);
-  readonly #follow_hint = h("p", {class: "hint"}, texts.select_first);
-  readonly #lineage_hint = h("p", {class: "hint"}, texts.lineages);
+  readonly #follow_row = check(this.#follow, texts.follow);
+  readonly #follow_hint = hint(texts.select_first);
+  readonly #lineage_hint = hint(texts.lineages);
 
   readonly #context: PanelContext;
 
   constructor(context: PanelContext) {
     this.#context = context;
-    const row = (name: Switch) => h("label", {class: "check"}, this.#checks[name], texts.switches[name]);
+    const row = (name: Switch) => check(this.#checks[name], texts.switches[name]);
     this.element =
       h("div", {class: "panel panel-view"},
         h("div", {class: "view-fields"}, ...this.#field("skin", this.#skin, texts.skin),

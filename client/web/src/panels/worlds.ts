@@ -6,6 +6,7 @@ import {speed_text, state_word} from "../texts/states";
 import {worlds_texts as texts} from "../texts/worlds";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
+import {Question, hint} from "../widgets/form";
 import {name_problem, unused_name} from "../world/names";
 
 import type {Panel, PanelContext} from "../world/panel_context";
@@ -24,10 +25,10 @@ export class WorldsPanel implements Panel {
   #fork: HTMLButtonElement;
   #remove: HTMLButtonElement;
   #why = h("p", {class: "hint"});
-  #confirm: HTMLElement;
+  #confirm: Question;
   #question = h("p", {});
   #deleted = "";
-  #fork_form: HTMLFormElement;
+  #fork_form: Question;
   #fork_name = h("input", {class: "field grow", "aria-label": texts.fork_name, maxlength: 64, spellcheck: "false"});
   #fork_from = h("p", {});
   #fork_error = h("p", {class: "error", role: "alert"});
@@ -40,34 +41,18 @@ export class WorldsPanel implements Panel {
     this.#create = guarded_button(texts.create, notify, () => this.#open_dialog());
     this.#fork = guarded_button(texts.fork, notify, () => this.#ask_fork());
     this.#remove = guarded_button(texts.remove, notify, () => this.#ask_delete());
-    this.#confirm =
-      h("div", {class: "confirm", hidden: true}, this.#question, h("p", {class: "hint"}, texts.file_stays),
-        h("div", {class: "row"},
-          h("button", {type: "button", class: "button button-danger", onclick: () => void this.#do_delete()},
-            texts.do_remove),
-          h("button", {type: "button", class: "button", onclick: () => this.#close(this.#confirm, this.#remove)},
-            common_texts.cancel)));
-    this.#fork_form =
-      h("form", {
-        class: "confirm",
-        hidden: true,
-        onsubmit: (event: Event) => {
-          event.preventDefault();
-          void this.#do_fork();
-        }
-      },
-        this.#fork_from,
-        h("div", {class: "row"}, this.#fork_name,
-          h("button", {type: "submit", class: "button button-primary"}, texts.do_fork),
-          h("button", {type: "button", class: "button", onclick: () => this.#close(this.#fork_form, this.#fork)},
-            common_texts.cancel)),
-        this.#fork_error);
+    this.#confirm = new Question(
+      {before: [this.#question, hint(texts.file_stays)]}, texts.do_remove, () => void this.#do_delete(),
+      () => this.#remove);
+    this.#fork_form = new Question(
+      {before: [this.#fork_from], field: this.#fork_name, after: [this.#fork_error]}, texts.do_fork,
+      () => void this.#do_fork(), () => this.#fork);
     this.#islands = new IslandsTable(context, () => this.element.hidden || this.refresh());
     this.element =
       h("div", {class: "panel panel-worlds"},
         h("table", {class: "table", "aria-label": texts.table}, table_head(texts.headings, 2), this.#worlds),
-        h("div", {class: "row"}, this.#create, this.#fork, this.#remove), this.#why, this.#confirm, this.#fork_form,
-        this.#islands.element);
+        h("div", {class: "row"}, this.#create, this.#fork, this.#remove), this.#why, this.#confirm.element,
+        this.#fork_form.element, this.#islands.element);
   }
 
   refresh(): void {
@@ -83,7 +68,7 @@ export class WorldsPanel implements Panel {
                                                      server.why_not("delete_world"));
     set_text(this.#why, why_create);
     if (why_create) {
-      this.#confirm.hidden = this.#fork_form.hidden = true;
+      this.#confirm.element.hidden = this.#fork_form.element.hidden = true;
     }
     this.#islands.refresh();
   }
@@ -124,13 +109,12 @@ export class WorldsPanel implements Panel {
   #ask_delete(): void {
     this.#deleted = this.#context.world().name;
     set_text(this.#question, texts.ask_remove(this.#deleted));
-    this.#fork_form.hidden = true;
-    this.#confirm.hidden = false;
-    this.#confirm.querySelector("button")!.focus();
+    this.#fork_form.element.hidden = true;
+    this.#confirm.open();
   }
 
   async #do_delete(): Promise<void> {
-    this.#close(this.#confirm, this.#remove);
+    this.#confirm.close();
     await this.#context.attempt(() => this.#context.server.request("delete_world", {world: this.#deleted}));
   }
 
@@ -145,10 +129,8 @@ export class WorldsPanel implements Panel {
     set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.feed.tick));
     set_text(this.#fork_error, "");
     this.#fork_name.value = unused_name(world.name, this.#context.server.world_names);
-    this.#confirm.hidden = true;
-    this.#fork_form.hidden = false;
-    this.#fork_name.select();
-    this.#fork_name.focus();
+    this.#confirm.element.hidden = true;
+    this.#fork_form.open();
   }
 
   async #do_fork(): Promise<void> {
@@ -159,14 +141,9 @@ export class WorldsPanel implements Panel {
     }
     try {
       await this.#context.fork(name);
-      this.#close(this.#fork_form, this.#fork);
+      this.#fork_form.close();
     } catch (error) {
       set_text(this.#fork_error, (error as Error).message);
     }
-  }
-
-  #close(form: HTMLElement, button: HTMLElement): void {
-    form.hidden = true;
-    button.focus();
   }
 }

@@ -28,26 +28,11 @@ interface Style {
   dash: readonly number[];
   thickness: number;
 }
-const plain: Style = {
-  dash: [],
-  thickness: thickness_default
-};
-const thick: Style = {
-  dash: [],
-  thickness: 2.8
-};
-const dashed: Style = {
-  dash: [9, 3],
-  thickness: thickness_default
-};
-const dotted: Style = {
-  dash: [2, 2.5],
-  thickness: thickness_default
-};
-const thin: Style = {
-  dash: [8, 3, 2, 3],
-  thickness: 1.2
-};
+function style(dash: readonly number[], thickness = thickness_default): Style {
+  return {dash, thickness};
+}
+const plain = style([]), thick = style([], 2.8);
+const dashed = style([9, 3]), dotted = style([2, 2.5]), thin = style([8, 3, 2, 3], 1.2);
 
 const gene_colours: readonly SeriesColour[] = ["blue", "orange", "green", "purple", "vermilion", "sky"];
 const gene_dashes: readonly(readonly number[])[] = [[], [9, 3], [2, 2.5], [9, 3, 2, 3], [4.5, 2], [14, 3, 2, 3, 2, 3]];

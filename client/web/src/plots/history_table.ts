@@ -33,6 +33,11 @@ export class HistoryTable {
     return this.#rows.length;
   }
 
+  /** 0: the table is empty. */
+  get last_generation(): number {
+    return this.#rows.length > 0 ? this.#generation_at(this.#rows.length - 1) : 0;
+  }
+
   clear(): void {
     this.#rows = [];
     this.#columns.clear();

@@ -48,11 +48,11 @@ export class IslandView {
   readonly island = new StreamedIsland();
   settings: ViewSettings;
   #population_version = 0;
-  readonly #region = new StreamedRegion();
+  readonly region = new StreamedRegion();
   readonly #colouring = new Colouring();
   readonly #density = new DensityGrid();
   readonly #minimap = new MinimapGrid();
-  readonly #description = new Description();
+  readonly description = new Description();
   #is_dirty = true;
   #drawn_blend = 1;
   #drawn_camera: Camera|null = null;
@@ -82,7 +82,7 @@ export class IslandView {
   /** Drops the snapshots. Call it before another world or island is shown. */
   clear(): void {
     this.island.clear();
-    this.#region.forget();
+    this.region.forget();
     this.#is_dirty = true;
   }
 
@@ -107,7 +107,7 @@ export class IslandView {
     const scene = this.#scene(camera, blend, painter);
     painter.draw(scene);
     const by_lineage = this.settings.look.colour_by === "lineage" ? this.#current_population() : null;
-    this.#description.update(scene, this.#what_is_pointed_at(scene), this.#colouring, by_lineage);
+    this.description.update(scene, this.#what_is_pointed_at(scene), this.#colouring, by_lineage);
   }
 
   /** The camera of the last frame; differs from the one that was set while it follows an organism. Null before the
@@ -125,16 +125,11 @@ export class IslandView {
     return camera && picked_at({x, y}, radius, camera, this.settings.place, this.island.at, this.#drawn_blend);
   }
 
-  /** What was drawn last; another object only after a change. Null before the first snapshot. */
-  drawing(): Drawing|null {
-    return this.#description.drawing;
-  }
-
   /** The View to request now (SetView), if the island is streamed in part; null if the one returned last is still
    *  suitable. */
   view_to_request(now_ms: number): WantedView|null {
     const camera = this.camera();
-    return camera === null ? null : this.#region.update(camera, this.settings.place, this.detail(camera), now_ms);
+    return camera === null ? null : this.region.update(camera, this.settings.place, this.detail(camera), now_ms);
   }
 
   /** The level of detail that is useful for what is drawn. */
@@ -149,11 +144,6 @@ export class IslandView {
     return this.#wants_density(camera)    ? "DETAIL_DENSITY" :
       small && no_single_organism_matters ? "DETAIL_DOTS" :
                                             "DETAIL_FULL";
-  }
-
-  /** Call after the subscription was renewed. */
-  forget_view(): void {
-    this.#region.forget();
   }
 
   #blend_at(now_ms: number): number {

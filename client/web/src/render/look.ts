@@ -53,104 +53,45 @@ export const unknown = rgb(140, 140, 144);
 export const organism_outline = rgb(20, 20, 24);
 const strip = rgb(230, 230, 232);
 
-export interface IslandColours {
-  outside: Colour; // around the walls
-  ground: Colour;
-  wall: Colour;
-  label: Colour; // numbers on the ground
-  body_low: Colour; // an organism with no health
-  body_high: Colour; // one with the greatest health
-  body: Colour; // an organism whose health is unknown
-  arc: Colour; // the health arc; classic: the circle of an organism
-  pointed_at: Colour; // rings around organisms
-  selected: Colour;
-  food: Colour;
-  poison: Colour;
-  crate: Colour;
-  crate_edge: Colour;
-  obstacle: Colour;
-  food_radius: Colour;
-  poison_radius: Colour;
-  trail: Colour;
-  death: Colour;
-  wanders: Colour; // the choice of an organism
-  seeks: Colour;
-  flees: Colour;
+/** The colours of an island, each in the variants dark, light and classic. */
+const colour_table = {
+  outside: [rgb(11, 12, 22), strip, strip], // around the walls
+  ground: [rgb(20, 22, 40), rgb(250, 250, 253), rgb(204, 204, 204)],
+  wall: [rgb(74, 80, 116), rgb(92, 96, 124), rgb(0, 0, 0)],
+  label: [rgb(232, 232, 244), rgb(28, 26, 44), rgb(20, 20, 24)], // numbers on the ground
+  body_low: [rgb(92, 66, 190), rgb(186, 170, 240), rgb(104, 22, 148)], // an organism with no health
+  body_high: [rgb(206, 192, 255), rgb(84, 48, 196), rgb(104, 22, 148)], // one with the greatest health
+  body: [rgb(160, 138, 250), rgb(112, 84, 222), rgb(104, 22, 148)], // an organism whose health is unknown
+  arc: [rgb(255, 255, 255), rgb(52, 22, 130), rgb(104, 22, 148)], // the health arc; classic: the circle of an organism
+  pointed_at: [rgb(255, 255, 255), rgb(52, 22, 130), rgb(190, 60, 250)], // rings around organisms
+  selected: [rgb(255, 214, 90), rgb(224, 130, 0), rgb(255, 255, 255)],
+  food: [rgb(150, 236, 116), rgb(92, 192, 88), rgb(62, 176, 76)],
+  poison: [rgb(240, 52, 44), rgb(186, 12, 28), rgb(196, 22, 36)],
+  crate: [rgb(124, 92, 58), rgb(204, 168, 122), rgb(190, 148, 96)],
+  crate_edge: [rgb(186, 146, 98), rgb(132, 98, 56), rgb(104, 74, 38)],
+  obstacle: [rgb(84, 90, 112), rgb(150, 154, 168), rgb(92, 94, 100)],
+  food_radius: [rgb(150, 236, 116, 200), rgb(62, 150, 60, 220), rgb(62, 176, 76, 220)],
+  poison_radius: [rgb(240, 72, 64, 220), rgb(186, 12, 28, 220), rgb(140, 8, 24, 220)],
+  trail: [rgb(150, 130, 245, 120), rgb(112, 84, 222, 80), rgb(70, 30, 100)],
+  death: [rgb(255, 176, 90), rgb(224, 120, 20), rgb(104, 22, 148)],
+  wanders: [rgb(196, 198, 212), rgb(90, 90, 96), rgb(90, 90, 96)], // the choice of an organism
+  seeks: [kinds[1]!, kinds[4]!, kinds[4]!],
+  flees: [rgb(255, 140, 50), kinds[5]!, kinds[5]!],
+};
+
+export type IslandColours = {
+  readonly[name in keyof typeof colour_table]: Colour
+};
+
+function colours_in(column: number): IslandColours {
+  const of_name = Object.entries(colour_table).map(([name, colours]) => [name, colours[column] as Colour]);
+  return Object.fromEntries(of_name) as IslandColours; // the names are those of the table
 }
 
-export const island_colours: {readonly[name in "dark" | "light" | "classic"]: IslandColours} = {
-  dark: {
-    outside: rgb(11, 12, 22),
-    ground: rgb(20, 22, 40),
-    wall: rgb(74, 80, 116),
-    label: rgb(232, 232, 244),
-    body_low: rgb(92, 66, 190),
-    body_high: rgb(206, 192, 255),
-    body: rgb(160, 138, 250),
-    arc: rgb(255, 255, 255),
-    pointed_at: rgb(255, 255, 255),
-    selected: rgb(255, 214, 90),
-    food: rgb(150, 236, 116),
-    poison: rgb(240, 52, 44),
-    crate: rgb(124, 92, 58),
-    crate_edge: rgb(186, 146, 98),
-    obstacle: rgb(84, 90, 112),
-    food_radius: rgb(150, 236, 116, 200),
-    poison_radius: rgb(240, 72, 64, 220),
-    trail: rgb(150, 130, 245, 120),
-    death: rgb(255, 176, 90),
-    wanders: rgb(196, 198, 212),
-    seeks: kinds[1]!,
-    flees: rgb(255, 140, 50),
-  },
-  light: {
-    outside: strip,
-    ground: rgb(250, 250, 253),
-    wall: rgb(92, 96, 124),
-    label: rgb(28, 26, 44),
-    body_low: rgb(186, 170, 240),
-    body_high: rgb(84, 48, 196),
-    body: rgb(112, 84, 222),
-    arc: rgb(52, 22, 130),
-    pointed_at: rgb(52, 22, 130),
-    selected: rgb(224, 130, 0),
-    food: rgb(92, 192, 88),
-    poison: rgb(186, 12, 28),
-    crate: rgb(204, 168, 122),
-    crate_edge: rgb(132, 98, 56),
-    obstacle: rgb(150, 154, 168),
-    food_radius: rgb(62, 150, 60, 220),
-    poison_radius: rgb(186, 12, 28, 220),
-    trail: rgb(112, 84, 222, 80),
-    death: rgb(224, 120, 20),
-    wanders: rgb(90, 90, 96),
-    seeks: kinds[4]!,
-    flees: kinds[5]!,
-  },
-  classic: {
-    outside: strip,
-    ground: rgb(204, 204, 204),
-    wall: rgb(0, 0, 0),
-    label: rgb(20, 20, 24),
-    body_low: rgb(104, 22, 148),
-    body_high: rgb(104, 22, 148),
-    body: rgb(104, 22, 148),
-    arc: rgb(104, 22, 148),
-    pointed_at: rgb(190, 60, 250),
-    selected: rgb(255, 255, 255),
-    food: rgb(62, 176, 76),
-    poison: rgb(196, 22, 36),
-    crate: rgb(190, 148, 96),
-    crate_edge: rgb(104, 74, 38),
-    obstacle: rgb(92, 94, 100),
-    food_radius: rgb(62, 176, 76, 220),
-    poison_radius: rgb(140, 8, 24, 220),
-    trail: rgb(70, 30, 100),
-    death: rgb(104, 22, 148),
-    wanders: rgb(90, 90, 96),
-    seeks: kinds[4]!,
-    flees: kinds[5]!,
-  },
+export const island_colours = {
+  dark: colours_in(0),
+  light: colours_in(1),
+  classic: colours_in(2)
 };
 
 /** The name of the look's colours and styles. The classic skin is always grey. */

@@ -6,10 +6,6 @@ function generations(count: number): string {
 }
 
 export const evolution_texts = {
-  show: "Show evolution",
-  show_help: "Shows generation 1 and the present side by side.",
-  end: "End the comparison",
-  end_help: "Shows only the present again (B).",
   asks: (generation: number) =>
     `This world is in generation ${with_separators(generation)}: there is little evolution to see yet.`,
   run: (count: number) => `Run ${generations(count)} at full speed`,

@@ -1,5 +1,6 @@
 // Texts about the panels themselves: the titles of those that are loaded later, and why one is not shown yet.
 export const panels_texts = {
+  view: "View",
   organism: "Organism",
   glass_box: "Glass box",
   family: "Family tree",

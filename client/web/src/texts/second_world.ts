@@ -1,4 +1,4 @@
-// What people read when they choose a second world, and run both.
+// What people read when they choose a second world.
 import {with_separators} from "./numbers";
 
 export const second_world_texts = {
@@ -13,12 +13,4 @@ export const second_world_texts = {
   show_past: "Show",
   fork: (world: string) => `A fork of ${world}`,
   fork_hint: "a new world that starts from the moment shown",
-};
-
-export const both_texts = {
-  run: "Run both",
-  pause: "Pause both",
-  run_help: "Runs both worlds, or pauses both.",
-  replay_of: (world: string) => `the replay of ${world}`,
-  refused: (world: string, why: string) => `${world}: ${why}`,
 };

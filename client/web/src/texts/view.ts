@@ -4,7 +4,6 @@ import type {Look} from "../core/messages";
 type Switch = "trails"|"flashes"|"density"|"minimap"|"interpolate";
 
 export const view_texts = {
-  title: "View",
   skin: "skin",
   skins: {vivid: "vivid", classic: "classic"} as {readonly[skin in Look["skin"]]: string},
   background: "background",

@@ -49,7 +49,7 @@ export class WorkerPane {
 
   /** The server has accepted the subscription, in a new session. */
   subscribed(): void {
-    this.#renderer?.view.forget_view();
+    this.#renderer?.view.region.forget();
   }
 
   /** Takes a snapshot. Returns whether the pane draws it and acknowledges it afterwards. */
@@ -241,7 +241,7 @@ export class WorkerPane {
       this.#report("camera", JSON.stringify(camera), {kind: "camera", pane: this.#number, camera});
     }
     if (now_ms - this.#reported_ms.drawing >= drawing_report_ms) {
-      const drawing = renderer.view.drawing();
+      const drawing = renderer.view.description.drawing;
       if (drawing && this.#report("drawing", JSON.stringify(drawing), {kind: "drawing", pane: this.#number, drawing})) {
         this.#reported_ms.drawing = now_ms;
       }

@@ -6,15 +6,15 @@
 // revision on which the edits are based. If another client has changed a parameter since, the server rejects the
 // request. Undo sends another SetParameters request.
 import type {
-  ParameterDescription, ParametersChanged, ParameterSet, ParameterState, ParameterValue, PlannedChange, ScheduledValue,
-  SetParameters} from "../core/protocol";
+  ParameterAssignment, ParameterDescription, ParametersChanged, ParameterSet, ParameterState, ParameterValue,
+  PlannedChange, ScheduledValue, SetParameters} from "../core/protocol";
 import {parameter_words} from "../texts/parameter_words";
 import {actor_text} from "../texts/users";
 
 import {same, value_text} from "./parameter_values";
 
 const transactions_kept = 100;
-const field_prefix = "set_parameters.";
+const field_prefix = "set_parameters.", revision_field = "expected_revision";
 
 export interface Violation {
   field: string;
@@ -33,36 +33,56 @@ export type When = {
   generation: number
 }|{tick: number}|null;
 
-interface State {
-  value: ParameterValue;
-  pending: ParameterValue|null;
-  edit: ParameterValue|null;
-  client_of_last_change: string;
-  violation: Violation|null;
+/** One parameter: what the server reports about it, and the edit that has not been sent. */
+export class EditedParameter {
+  value: ParameterValue; // the current one
+  pending: ParameterValue|null = null;
+  edit: ParameterValue|null = null;
+  client_of_last_change = ""; // empty: no other client has changed it since the value was received or set here
+  violation: Violation|null = null; // why the server rejected the value that was sent last; null if it accepted it
+
+  constructor(readonly about: ParameterDescription) {
+    this.value = about.default_value ?? {};
+  }
+
+  /** The pending value; if there is none, the current value. */
+  get requested(): ParameterValue {
+    return this.pending ?? this.value;
+  }
+
+  /** The edited value; if there is none, the requested one. */
+  get shown(): ParameterValue {
+    return this.edit ?? this.requested;
+  }
+
+  get is_default(): boolean {
+    return same(this.shown, this.about.default_value ?? {});
+  }
 }
+
 interface Change {
-  parameter: number;
+  parameter: EditedParameter;
   before: ParameterValue;
   after: ParameterValue;
 }
+type Verb = "undo"|"redo";
 interface Transaction {
-  kind: "apply"|"plan"|"undo"|"redo";
+  kind: "apply"|"plan"|Verb;
   changes: Change[];
 }
 
 export class ParameterEdits {
-  /** Why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is in
-   *  violation(). */
+  /** Why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is its
+   *  violation. */
   problem = "";
   revision = 0; // 0: no set has been received
   registry: readonly ParameterDescription[] = [];
+  parameters: EditedParameter[] = []; // in the order of the registry
   planned: PlannedChange[] = [];
   schedule: ScheduledValue[] = [];
   #index = new Map<string, number>();
-  #states: State[] = [];
   #sent: Transaction|null = null;
-  #done: Change[][] = []; // newest last
-  #undone: Change[][] = [];
+  #reversible: {[verb in Verb]: Change[][]} = {undo: [], redo: []}; // newest last
   #edit_number = 0; // counts the changes of edits
 
   // ---- what the server reports ----
@@ -76,15 +96,12 @@ export class ParameterEdits {
 
   /** Clears everything except the registry. Call when another world or run is shown. */
   forget(): void {
-    this.#states = this.registry.map(
-      (about) =>
-        ({value: about.default_value ?? {}, pending: null, edit: null, client_of_last_change: "", violation: null}));
+    this.parameters = this.registry.map((about) => new EditedParameter(about));
     this.revision = 0;
     this.planned = [];
     this.schedule = [];
     this.#sent = null;
-    this.#done = [];
-    this.#undone = [];
+    this.#reversible = {undo: [], redo: []};
     this.problem = "";
     this.#edit_number += 1;
   }
@@ -111,26 +128,22 @@ export class ParameterEdits {
       return true; // the known set already contains this change
     }
     for (const state of changed.changed ?? []) {
-      this.#take(state);
-      const i = this.#index.get(state.name ?? "");
-      if (i !== undefined) {
-        this.#states[i]!.client_of_last_change = actor_text(changed.by);
-      }
+      this.#take(state, actor_text(changed.by));
     }
     const is_next = revision === this.revision + 1;
     this.revision = revision;
     return is_next;
   }
 
-  #take(reported: ParameterState): void {
-    const i = this.#index.get(reported.name ?? "");
-    if (i === undefined) {
+  #take(reported: ParameterState, client?: string): void {
+    const state = this.parameters[this.#index.get(reported.name ?? "") ?? -1];
+    if (!state) {
       return;
     }
-    const state = this.#states[i]!;
     state.value = reported.value ?? {};
     state.pending = reported.pending ?? null;
-    if (state.edit && same(state.edit, this.requested_value(i))) {
+    state.client_of_last_change = client ?? state.client_of_last_change;
+    if (state.edit && same(state.edit, state.requested)) {
       state.edit = state.violation = null;
     }
   }
@@ -139,88 +152,29 @@ export class ParameterEdits {
     return this.registry.length > 0 && this.revision > 0;
   }
 
-  // ---- one parameter; i is its index in the registry ----
-
-  current_value(i: number): ParameterValue {
-    return this.#states[i]!.value;
-  }
-
-  /** Returns the pending value; if there is none, the current value. */
-  requested_value(i: number): ParameterValue {
-    return this.#states[i]!.pending ?? this.#states[i]!.value;
-  }
-
-  /** Returns the edited value; if there is none, requested_value(). */
-  shown(i: number): ParameterValue {
-    return this.#states[i]!.edit ?? this.requested_value(i);
-  }
-
-  is_pending(i: number): boolean {
-    return this.#states[i]!.pending !== null;
-  }
-
-  is_edited(i: number): boolean {
-    return this.#states[i]!.edit !== null;
-  }
-
-  is_default(i: number): boolean {
-    return same(this.shown(i), this.registry[i]!.default_value ?? {});
-  }
-
-  /** Returns the client that last changed this parameter; empty if no other client has changed it since the value was
-   *  received or set here. */
-  client_of_last_change(i: number): string {
-    return this.#states[i]!.client_of_last_change;
-  }
-
-  /** Returns why the server rejected the value that was sent last; null if it accepted it. */
-  violation(i: number): Violation|null {
-    return this.#states[i]!.violation;
-  }
-
-  /** Returns the planned and scheduled values of a parameter: "0.2 in generation 30". */
-  planned_values(i: number): string[] {
-    const {name} = this.registry[i]!;
-    return [
-      ...this.schedule.filter((one) => one.name === name)
-        .map((one) => `${value_text(one.value ?? {})} ${parameter_words.in_generation(one.generation ?? 0)}`),
-      ...this.planned.flatMap(
-        (change) => (change.parameters ?? [])
-                      .filter((one) => one.name === name)
-                      .map((one) => `${value_text(one.value ?? {})} ${when_text(change)}`)),
-    ];
-  }
-
   // ---- editing: clears the violations and the problem of the last refusal, because they are about earlier values ----
 
-  /** Edits a value. A value equal to requested_value() removes the edit. */
+  /** Edits a value; i: its index in the registry. A value equal to the requested one removes the edit. */
   edit(i: number, value: ParameterValue): void {
     this.revert(i);
-    if (!same(value, this.requested_value(i))) {
-      this.#states[i]!.edit = value;
-    }
+    const parameter = this.parameters[i]!;
+    parameter.edit = same(value, parameter.requested) ? null : value;
   }
 
-  revert(i: number): void {
-    this.#states[i]!.edit = null;
-    this.#forget_refusal();
-  }
-
-  revert_all(): void {
-    for (const state of this.#states) {
-      state.edit = null;
+  /** i: absent: all. */
+  revert(i?: number): void {
+    for (const parameter of i === undefined ? this.parameters : [this.parameters[i]!]) {
+      parameter.edit = null;
     }
     this.#forget_refusal();
   }
 
   get edit_count(): number {
-    return this.#states.filter((state) => state.edit !== null).length;
+    return this.#edits().length;
   }
 
   #forget_refusal(): void {
-    for (const state of this.#states) {
-      state.violation = null;
-    }
+    this.#mark([]);
     this.problem = "";
     this.#edit_number += 1;
   }
@@ -233,57 +187,45 @@ export class ParameterEdits {
     const changes = this.#edits();
     return this.busy || changes.length === 0 ?
       null :
-      {fields: {...this.#fields(world, changes), ...when_fields(when), dry_run: true}, number: this.#edit_number};
+      {fields: {...fields_of(world, this.revision, changes, when), dry_run: true}, number: this.#edit_number};
   }
 
-  /** Stores the violations of a dry run unless the edits have changed since. refusal: null if the server accepted it.
-   *  */
+  /** Stores the violations of a dry run unless the edits have changed since. refusal: null if it was accepted. */
   checked(number: number, refusal: RefusalFacts|null): void {
     if (number === this.#edit_number && !this.busy) {
-      for (const state of this.#states) {
-        state.violation = null;
-      }
       this.#mark(refusal?.violations ?? []);
     }
   }
 
-  // ---- transactions: only one may be pending. The caller sends each returned request and calls answered() once for it
-  // ----
+  // ---- transactions: one at a time. The caller sends each returned request and calls answered() once for it ----
 
   get busy(): boolean {
     return this.#sent !== null;
-  }
-
-  get can_undo(): boolean {
-    return !this.busy && this.#done.length > 0;
-  }
-
-  get can_redo(): boolean {
-    return !this.busy && this.#undone.length > 0;
   }
 
   /** Returns the fields of the SetParameters that sends all edits; null if there is no edit or a transaction is
    *  pending. */
   apply(world: string, when: When = null): SetParameters|null {
     const changes = this.#edits();
-    return this.busy || changes.length === 0 ?
-      null :
-      {...this.#send(world, when === null ? "apply" : "plan", changes), ...when_fields(when)};
+    return this.busy || changes.length === 0 ? null :
+                                               this.#send(world, when === null ? "apply" : "plan", changes, when);
   }
 
-  /** Restores the values before the last transaction that was not undone, except values that other clients have changed
-   *  since. */
-  undo(world: string): SetParameters|null {
-    return this.#send_reversed(world, "undo", this.#done);
+  /** Restores the values before the last transaction that was not undone, or repeats the one that was undone last,
+   *  except values that other clients have changed since; null if nothing is left. */
+  reverse(world: string, verb: Verb): SetParameters|null {
+    const from = this.#reversible[verb];
+    while (!this.busy && from.length > 0) {
+      const changes = reversed(from.pop()!.filter(({parameter, after}) => same(parameter.requested, after)));
+      if (changes.length > 0) {
+        return this.#send(world, verb, changes, null);
+      } // other clients have changed all these values since
+    }
+    return null;
   }
 
-  redo(world: string): SetParameters|null {
-    return this.#send_reversed(world, "redo", this.#undone);
-  }
-
-  /** Takes the answer to the pending transaction: the new ParameterSet or null, or the refusal, or the error that no
-   *  answer arrived. Returns
-   *  whether the caller must request the complete set. */
+  /** Takes the answer to the pending transaction: the new ParameterSet or null, or the refusal, or that no answer
+   *  arrived. Returns whether the caller must request the complete set. */
   answered(answer: {set: ParameterSet|null}|{refusal: RefusalFacts}|{lost: true}): boolean {
     const sent = this.#sent;
     if (sent === null) {
@@ -299,87 +241,70 @@ export class ParameterEdits {
       return sent.kind === "plan"; // the list of planned changes is longer now
     }
     if ("refusal" in answer) {
-      this.#take_refusal(answer.refusal);
+      const {message, violations} = answer.refusal,
+                      is_stale = violations.some((one) => field_name(one) === revision_field);
+      this.problem = this.#mark(violations) ? parameter_words.see_marked :
+        is_stale                            ? parameter_words.is_stale :
+                                              message;
     } else {
       this.problem = parameter_words.lost;
     }
-    if (
-      sent.kind === "undo" ||
-      sent.kind === "redo") { // keep the transaction, so that the user can undo or redo it again
-      (sent.kind === "undo" ? this.#done : this.#undone).push(reversed(sent.changes));
+    if (sent.kind === "undo" || sent.kind === "redo") { // keep it, so that the user can undo or redo it again
+      this.#reversible[sent.kind].push(reversed(sent.changes));
     }
     return true;
   }
 
   #edits(): Change[] {
-    return this.#states.flatMap(
-      (state, parameter) =>
-        (state.edit === null ? [] : [{parameter, before: this.requested_value(parameter), after: state.edit}]));
+    return this.parameters.flatMap(
+      (parameter) => parameter.edit ? [{parameter, before: parameter.requested, after: parameter.edit}] : []);
   }
 
-  #fields(world: string, changes: readonly Change[]): SetParameters {
-    return {
-      world,
-      expected_revision: this.revision,
-      parameters: changes.map(({parameter, after}) => ({name: this.registry[parameter]!.name, value: after})),
-    };
-  }
-
-  #send(world: string, kind: Transaction["kind"], changes: Change[]): SetParameters {
+  #send(world: string, kind: Transaction["kind"], changes: Change[], when: When): SetParameters {
     this.#sent = {kind, changes};
-    return this.#fields(world, changes);
-  }
-
-  #send_reversed(world: string, kind: "undo"|"redo", from: Change[][]): SetParameters|null {
-    while (!this.busy && from.length > 0) {
-      const changes =
-        reversed(from.pop()!.filter(({parameter, after}) => same(this.requested_value(parameter), after)));
-      if (changes.length > 0) {
-        return this.#send(world, kind, changes);
-      } // other clients have changed all these values since
-    }
-    return null;
+    return fields_of(world, this.revision, changes, when);
   }
 
   #take_acceptance({kind, changes}: Transaction): void {
     for (const {parameter, after} of changes) {
-      const state = this.#states[parameter]!;
-      state.client_of_last_change = "";
-      if (state.edit && same(state.edit, after)) {
-        state.edit = null; // otherwise the user has edited the value again meanwhile
+      parameter.client_of_last_change = "";
+      if (parameter.edit && same(parameter.edit, after)) {
+        parameter.edit = null; // otherwise the user has edited the value again since it was sent
       }
     }
     if (kind === "plan") {
       return; // a planned change is cancelled, not undone
     }
     if (kind === "apply") {
-      this.#undone = [];
+      this.#reversible.redo = [];
     }
-    const kept = kind === "undo" ? this.#undone : this.#done;
+    const kept = this.#reversible[kind === "undo" ? "redo" : "undo"];
     kept.push(changes);
     if (kept.length > transactions_kept) {
       kept.shift();
     }
   }
 
-  /** Marks the parameters of violations. Returns whether any belongs to a parameter. */
+  /** Marks only the parameters of these violations. Returns whether any belongs to a parameter. */
   #mark(violations: readonly Violation[]): boolean {
-    let marked = false;
-    for (const violation of violations) {
-      const i = this.#index.get(field_name(violation));
-      if (i !== undefined) {
-        this.#states[i]!.violation = violation;
-        marked = true;
-      }
+    for (const parameter of this.parameters) {
+      parameter.violation = violations.find((one) => field_name(one) === parameter.about.name) ?? null;
     }
-    return marked;
+    return this.parameters.some(({violation}) => violation !== null);
   }
+}
 
-  #take_refusal(refusal: RefusalFacts): void {
-    const marked = this.#mark(refusal.violations);
-    const is_stale = refusal.violations.some((violation) => field_name(violation) === "expected_revision");
-    this.problem = marked ? parameter_words.see_marked : is_stale ? parameter_words.is_stale : refusal.message;
-  }
+/** The planned and scheduled values of a parameter: "0.2 in generation 30". */
+export function planned_values({schedule, planned}: ParameterEdits, parameter: string|undefined): string[] {
+  const text = ({value = {}}: ParameterAssignment|ScheduledValue, when: string): string =>
+    `${value_text(value)} ${when}`;
+  return [
+    ...schedule.filter(({name}) => name === parameter)
+      .map((one) => text(one, parameter_words.in_generation(one.generation ?? 0))),
+    ...planned.flatMap(
+      (change) =>
+        (change.parameters ?? []).filter(({name}) => name === parameter).map((one) => text(one, when_text(change)))),
+  ];
 }
 
 function field_name(violation: Violation): string {
@@ -390,8 +315,10 @@ function reversed(changes: readonly Change[]): Change[] {
   return changes.map(({parameter, before, after}) => ({parameter, before: after, after: before}));
 }
 
-function when_fields(when: When): Pick<SetParameters, "at_generation"|"at_tick"> {
-  return when === null ? {} : "generation" in when ? {at_generation: when.generation} : {at_tick: when.tick};
+function fields_of(world: string, expected_revision: number, changes: readonly Change[], when: When): SetParameters {
+  const parameters = changes.map(({parameter, after}) => ({name: parameter.about.name, value: after}));
+  const at = when === null ? {} : "generation" in when ? {at_generation: when.generation} : {at_tick: when.tick};
+  return {world, expected_revision, parameters, ...at};
 }
 
 /** Returns when a PlannedChange is due: "in generation 30", "after tick 1,200". */

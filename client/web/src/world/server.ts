@@ -2,6 +2,9 @@
 //
 // Every request goes through respond(), whose answers and events keep `worlds` up to date. The page opens watching:
 // until the user takes part, may() allows only requests that change nothing for others.
+//
+// Members  More than 30: what may be sent depends on the session, the role and the replays of the session, and answers
+//          and events change the list of worlds, so the page asks one object about all of them.
 import {access_texts} from "../texts/access";
 import {refusal_text} from "../texts/refusals";
 

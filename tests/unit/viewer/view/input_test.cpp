@@ -51,6 +51,7 @@ struct InputTest : testing::Test {
     InputTest() {
         camera.set_viewport({0, 0, 1000, 1000});
         camera.set_island(500, 500);
+        camera.zoom_at({500, 500}, 4);
     }
     std::optional<Action> handle(const sf::Event& event, Captured captured = {}) {
         return input.handle(event, captured, camera);

@@ -1,9 +1,10 @@
 // run_both: runs or pauses two worlds next to each other with one command. Roles and leases hold for each of them.
+import {both_texts as texts} from "../texts/both";
 import {common_texts} from "../texts/common";
 import {key_texts} from "../texts/keys";
-import {both_texts as texts} from "../texts/second_world";
-import type {PanelContext} from "../world/panel_context";
-import type {ViewedWorld} from "../world/world";
+
+import type {PanelContext} from "./panel_context";
+import type {ViewedWorld} from "./world";
 
 /** What the button does now. */
 export interface BothState {

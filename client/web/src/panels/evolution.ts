@@ -1,23 +1,24 @@
 // Evolution: shows generation 1 of the present world next to the present, and how the fitness has changed. A world in
 // its first generations can run at full speed first.
 //
-// Owner    App; one. The live world keeps its pane; the replay gets the second one.
+// Owner    EvolutionButton; one. The live world keeps its pane; the replay gets the second one.
 import type {Speed} from "../core/protocol";
 import {evolution_texts as texts} from "../texts/evolution";
-import {guarded_button, set_allowed} from "../widgets/controls";
-import {set_text} from "../widgets/dom";
 import type {Banner} from "../widgets/notices";
 import type {EndedGeneration} from "../world/history";
+import {run_or_pause_both, runs, why_not} from "../world/run_both";
 import type {ViewedWorld} from "../world/world";
-import type {PaneAreas} from "./pane_areas";
-import {run_or_pause_both, runs, why_not} from "./run_both";
 import type {SecondWorldContext} from "./second_world";
 
 const early_max = 10; // generations in which there is little to see
 const count = 30; // generations that a young world runs at full speed
 
 export interface EvolutionContext extends SecondWorldContext {
-  readonly panes: PaneAreas;
+  readonly panes: {
+    readonly all: readonly unknown[]; close_second(): void;
+    /** are_ordered: the second world is the past of the first one. */
+    set_captions(text_of: (world: ViewedWorld) => string, are_ordered: boolean): void;
+  };
 }
 
 /** A young world runs at full speed. */
@@ -34,7 +35,6 @@ type State = {
 }|{kind: "runs", advance: Advance}|{kind: "shown", live: ViewedWorld, past: ViewedWorld};
 
 export class Evolution {
-  readonly button: HTMLButtonElement;
   #state: State = {kind: "none"};
   readonly #context: EvolutionContext;
   readonly #on_change: () => void;
@@ -43,7 +43,10 @@ export class Evolution {
   constructor(context: EvolutionContext, on_change: () => void) {
     this.#context = context;
     this.#on_change = on_change;
-    this.button = guarded_button(texts.show, context.notify, () => this.toggle(), "button show-evolution");
+  }
+
+  get is_shown(): boolean {
+    return this.#state.kind === "shown";
   }
 
   /** Shows generation 1 next to the present, or only the present again. */
@@ -85,16 +88,12 @@ export class Evolution {
     } else if (state.kind === "runs") {
       this.#advance(state.advance);
     }
-    const is_shown = this.#state.kind === "shown";
-    set_text(this.button, is_shown ? texts.end : texts.show);
-    const problem = is_shown ? "" : this.#context.world().past.problem;
-    set_allowed(this.button, problem, is_shown ? texts.end_help : texts.show_help);
-    panes.set_captions((world) => this.#caption(world), is_shown);
+    panes.set_captions((world) => this.#caption(world), this.is_shown);
   }
 
   async #begin(): Promise<void> {
     const {panes} = this.#context;
-    if (panes.other !== null) {
+    if (panes.all.length > 1) {
       panes.close_second();
     }
     const world = this.#context.world();
