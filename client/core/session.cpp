@@ -296,13 +296,13 @@ void Session::perform_handshake() {
             self->begin();
             return;
         }
-        const std::string known = explain_tls_error(error);
+        const std::string explained = explain_tls_error(error);
         const bool by_tls = error.category() == asio::error::get_ssl_category();
         const std::string why = !self->distrust_.empty() ? "its certificate is not trusted: " + self->distrust_
-                                : known.empty()          ? error.message()
-                                                         : known;
+                                : explained.empty()      ? error.message()
+                                                         : explained;
         self->end({.reason = "no TLS with " + to_text(self->options_.server) + ": " + why,
-                   .final = !self->distrust_.empty() || (by_tls && !known.empty())});
+                   .final = !self->distrust_.empty() || (by_tls && !explained.empty())});
     });
 }
 

@@ -111,16 +111,16 @@ void Subscriptions::take_view_answer(SubscriptionHandle handle, const evod::v1::
 
 std::string Subscriptions::take_snapshot(evod::v1::SnapshotFrame frame, ConnectionStatus& status) {
     const std::uint32_t server_id = frame.subscription_id(), island = frame.island();
-    const auto known =
+    const auto found =
         std::ranges::find_if(subscriptions_, [&](const auto& entry) { return entry.second.server_id == server_id; });
-    if (known == subscriptions_.end()) {
+    if (found == subscriptions_.end()) {
         return {}; // the program has unsubscribed since
     }
     // Servers without acknowledgements do not number their snapshots.
     const bool acknowledged =
-        known->second.request.subscribe_snapshots().has_unacknowledged_max() && frame.sequence() > 0;
+        found->second.request.subscribe_snapshots().has_unacknowledged_max() && frame.sequence() > 0;
     std::string acknowledgement = acknowledged ? acknowledgement_of(frame) : "";
-    IslandStream& stream = known->second.islands[island];
+    IslandStream& stream = found->second.islands[island];
     const bool is_delta = frame.codec() == evod::v1::CODEC_DELTA;
     if (is_delta && !codec::is_keyframe(frame) && stream.decoder.needs_keyframe() && stream.keyframe_requests > 0) {
         return acknowledgement; // the server sent this delta before the requested keyframe
@@ -130,7 +130,7 @@ std::string Subscriptions::take_snapshot(evod::v1::SnapshotFrame frame, Connecti
         // Converts the values to the format in WorldInfo and Event, so that they can be compared.
         decoded->about.set_run_id(hexadecimal(decoded->about.run_id()));
         decoded->about.set_state_hash(hexadecimal(decoded->about.state_hash()));
-        snapshots_[known->first][island] = std::make_shared<const codec::ReceivedSnapshot>(*std::move(decoded));
+        snapshots_[found->first][island] = std::make_shared<const codec::ReceivedSnapshot>(*std::move(decoded));
     } else {
         ++status.damaged_snapshot_count;
         status.last_damage = decoded.error().what;

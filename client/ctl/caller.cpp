@@ -83,8 +83,8 @@ Caller::Caller(const Common& common) : timeout_{common.timeout()} {
                           .client_version = EVOD_VERSION,
                           .connect_timeout = common.timeout(),
                           .unreachable_max = common.timeout()};
-    if (const auto known = core::apply(common.credentials, options); !known) {
-        throw Stop{ExitCode::Usage, known.error().what};
+    if (const auto applied = core::apply(common.credentials, options); !applied) {
+        throw Stop{ExitCode::Usage, applied.error().what};
     }
     connection_ = std::make_unique<core::Connection>(options);
     auto welcome = connection_->wait_connected(timeout_ + std::chrono::seconds{1});

@@ -30,9 +30,9 @@ void status(const Common& common) {
     Caller caller{common};
     v1::WorldList worlds = worlds_of(caller);
     if (!common.world.empty()) {
-        v1::WorldList one;
-        *one.add_worlds() = caller.world(common.world); // throws Stop if there is no world with this name
-        worlds = std::move(one);
+        v1::WorldList only;
+        *only.add_worlds() = caller.world(common.world); // throws Stop if there is no world with this name
+        worlds = std::move(only);
     }
     print(common, worlds, [&] {
         Table table{{{"WORLD"},
@@ -453,15 +453,15 @@ void add_query_commands(command_line::Command& app, const Common& common) {
     history_command.footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
     history_command.action([&] { history(common, options); });
 
-    auto& one = app.add_command("organism", "Show an organism: its genes, life and parents").group(group);
-    auto& wanted = one.keep(OrganismOptions{});
-    one.add_option("ID", &wanted.id, "Number of the organism in its generation, from 0, in order of birth")
+    auto& command = app.add_command("organism", "Show an organism: its genes, life and parents").group(group);
+    auto& wanted = command.keep(OrganismOptions{});
+    command.add_option("ID", &wanted.id, "Number of the organism in its generation, from 0, in order of birth")
         .required()
         .check(index_number);
-    one.add_option("--island", &wanted.island, "Island, numbered from 0").check(index_number);
-    add_options(one, wanted.moment);
-    one.footer("Examples:\n  evoctl organism 12\n  evoctl organism 12 --at-generation 3 --at-tick 600");
-    one.action([&] { organism(common, wanted); });
+    command.add_option("--island", &wanted.island, "Island, numbered from 0").check(index_number);
+    add_options(command, wanted.moment);
+    command.footer("Examples:\n  evoctl organism 12\n  evoctl organism 12 --at-generation 3 --at-tick 600");
+    command.action([&] { organism(common, wanted); });
 
     app.add_command("describe", "Show the server's version, features and limits").group(group).action([&] {
         describe(common);

@@ -282,7 +282,7 @@ v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached
         if (Clock::now() >= look_at) {
             v1::WorldInfo world = caller.world(begun.name());
             if (world.run_id() != begun.run_id()) {
-                throw Stop{ExitCode::Refused, begun.name() + " was reset meanwhile"};
+                throw Stop{ExitCode::Refused, begun.name() + " was reset before the run was over"};
             }
             progress.show(world.storage());
             progress.show(world);

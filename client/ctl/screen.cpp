@@ -20,11 +20,11 @@ TerminalSize terminal_size() {
     return {size.ws_col, size.ws_row};
 }
 
-void Drawing::draw(const std::string& text) {
+void LiveText::draw(const std::string& text) {
     const TerminalSize size = terminal_size();
     const std::string clipped = clip_page(text, size.columns, size.lines);
-    // Moves the cursor to the start of the last drawing and clears everything below. If the size of the terminal has
-    // changed, lines may have wrapped differently, so the start of the last drawing is unknown.
+    // Moves the cursor to the start of the last drawn text and clears everything below. If the size of the terminal has
+    // changed, lines may have wrapped differently, so the start of the last drawn text is unknown.
     const bool moved = lines_ > 0 && size != size_;
     std::cout << (moved        ? "\033[H"
                   : lines_ > 0 ? "\033[" + std::to_string(lines_) + "A"
@@ -35,22 +35,22 @@ void Drawing::draw(const std::string& text) {
     lines_ = std::ranges::count(clipped, '\n');
 }
 
-void Drawing::leave() {
+void LiveText::leave() {
     if (!std::exchange(ends_line_, true)) {
         std::cout << '\n' << std::flush;
     }
     lines_ = 0;
 }
 
-void ConnectionReporter::report(const core::Connection& connection, Drawing& drawing) {
+void ConnectionReporter::report(const core::Connection& connection, LiveText& live_text) {
     const auto status = connection.status();
     if (status.state == core::State::Failed) {
-        drawing.leave();
+        live_text.leave();
         throw Stop{ExitCode::NoConnection, status.reason};
     }
     const bool lost = status.state != core::State::Connected;
     if (lost && !lost_) {
-        drawing.leave();
+        live_text.leave();
         std::cerr << visible(status.reason) << "; reconnecting\n";
     }
     lost_ = lost;

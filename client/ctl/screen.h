@@ -15,13 +15,13 @@ struct TerminalSize {
 TerminalSize terminal_size();
 
 /// A text on the terminal that each draw() replaces. It consists of whole lines.
-class Drawing {
+class LiveText {
   public:
     /// Replaces the previous text. Cuts text that does not fit into the width and height of the terminal.
     void draw(const std::string& text);
     /// Keeps the current text on the terminal; the next draw() starts below it.
     void leave();
-    ~Drawing() { leave(); }
+    ~LiveText() { leave(); }
 
   private:
     std::ptrdiff_t lines_ = 0;
@@ -32,8 +32,8 @@ class Drawing {
 /// Reports on stderr that the connection was lost; throws Stop if the client will not reconnect.
 class ConnectionReporter {
   public:
-    /// drawing  the text on the terminal; the message is printed below it.
-    void report(const core::Connection& connection, Drawing& drawing);
+    /// live_text  the text on the terminal; the message is printed below it.
+    void report(const core::Connection& connection, LiveText& live_text);
 
   private:
     bool lost_ = false;

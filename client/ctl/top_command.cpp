@@ -63,7 +63,7 @@ class Top {
             return true;
         }
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
-        reporter_.report(caller_.connection(), drawing_);
+        reporter_.report(caller_.connection(), live_text_);
         if (!response) {
             return false;
         }
@@ -83,7 +83,7 @@ class Top {
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
             caller_.connection().wait_event(
                 std::clamp(left, std::chrono::milliseconds{0}, std::chrono::milliseconds{100}));
-            reporter_.report(caller_.connection(), drawing_);
+            reporter_.report(caller_.connection(), live_text_);
         }
     }
 
@@ -101,7 +101,7 @@ class Top {
                      lines - std::min<std::size_t>(lines, 3)) + // space for the last line and the cursor
             last_line;
         if (redraw_) {
-            drawing_.draw(text);
+            live_text_.draw(text);
         } else {
             std::cout << (std::exchange(printed_, true) ? "\n" : "") << text << std::flush;
         }
@@ -114,7 +114,7 @@ class Top {
     Caller caller_;
     const bool redraw_;
     std::optional<Look> before_, last_;
-    Drawing drawing_;
+    LiveText live_text_;
     ConnectionReporter reporter_;
     bool printed_ = false;
 };

@@ -79,7 +79,7 @@ class WatchDisplay {
             if (const auto event = caller_.connection().wait_event(std::chrono::milliseconds{100})) {
                 take(*event);
             }
-            reporter_.report(caller_.connection(), drawing_);
+            reporter_.report(caller_.connection(), live_text_);
             caller_.require_subscribed(subscription); // after a reconnection the world may be gone
         }
         if (redraw_ && !ended_) {
@@ -163,7 +163,7 @@ class WatchDisplay {
             draw();
         }
         if (!why.empty()) {
-            drawing_.leave();
+            live_text_.leave();
             std::cerr << visible(why) << '\n';
         }
         ended_ = true;
@@ -219,7 +219,7 @@ class WatchDisplay {
             }
         }
         text += "\nCtrl-C stops watching\n";
-        drawing_.draw(text);
+        live_text_.draw(text);
     }
 
     std::string genes(const v1::GenerationStatistics& island) const {
@@ -242,7 +242,7 @@ class WatchDisplay {
     v1::Statistics statistics_;
     std::deque<GenerationLine> lines_; // the newest generations, at most `width`
     std::uint64_t seen_ = 0;           // number of generations that ended while this command ran
-    Drawing drawing_;
+    LiveText live_text_;
     ConnectionReporter reporter_;
     std::string trouble_; // the problem of the storage that was printed last; empty: none
     Clock::time_point draw_at_{};
@@ -272,7 +272,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
         std::cerr << visible(trouble) << '\n'; // the problem began before this command
     }
     ConnectionReporter reporter;
-    Drawing none;
+    LiveText none;
     std::uint64_t seen = 0;
     for (bool gone = false; !gone && !interrupted() && (!count || seen < *count);) {
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
@@ -294,7 +294,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
 void add_watch_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Follow";
     auto& watch =
-        app.add_command("watch", "Show live statistics; if the output is no terminal, print one line per generation")
+        app.add_command("watch", "Show live statistics; if the output is not a terminal, print one line per generation")
             .group(group);
     auto& generations = watch.keep(std::optional<std::uint64_t>{});
     watch

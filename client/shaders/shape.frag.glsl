@@ -54,7 +54,7 @@ float distance_outside() {
 #elif FORM == LEAF                   // the overlap of two discs
     vec2 tilted = vec2(place.x - place.y, place.x + place.y) * 0.7071;
     return length(vec2(tilted.x, abs(tilted.y) + 1.018 * half_size.x)) - 2.068 * half_size.x;
-#elif FORM == STAR                   // the distance from the line between a tip and the valley beside it
+#elif FORM == STAR                   // the distance from the line between a tip and the valley next to it
     vec2 tilted = abs(vec2(place.x - place.y, place.x + place.y)) * 0.7071;
     tilted = tilted.y > tilted.x ? tilted.yx : tilted;
     return dot(tilted - vec2(2.0 * half_size.x, 0.0), vec2(0.339, 0.941));

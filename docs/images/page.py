@@ -42,7 +42,7 @@ def save(page, name, part=None):
         document.querySelector(arguments[0]).getBoundingClientRect())""", part)
     shot = page.cdp("Page.captureScreenshot", format="png", **({"clip": clip} if clip else {}))["data"]
     image = Image.open(io.BytesIO(base64.b64decode(shot))).convert("RGB")
-    image.quantize(256, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
+    image.quantize(256, Image.Quantize.MAXCOVERAGE, 4, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
     size = (HERE / name).stat().st_size
     assert size <= BYTES_MAX, f"{name}: {size} bytes, allowed at most {BYTES_MAX}"
 
@@ -110,9 +110,9 @@ def main():
             evoctl("run", "14", "--wait")
             evoctl("speed", "1")
             page = browser.Browser("--lang=en")
-            page.resize(1280, 860)
+            page.resize(1280, 800)
             page.open(f"http://127.0.0.1:{HTTP_PORT}/")
-            show(page, 33_900, "Worlds", "Islands of default")
+            show(page, 33_900, "Overview", "Show evolution")
             save(page, "page.png")
             show_breeding(page)
             show_panels(page)

@@ -16,7 +16,7 @@ namespace {
 // The zstd level: the fastest of the regular levels, because the network thread waits for the compression.
 constexpr int level = 1;
 // zstd searches for matches at every 16th byte. Compared with every byte, encoding a world at full speed takes a
-// quarter less time and 1 % more bytes (snapshot_bench).
+// quarter less time and 1 % more bytes.
 constexpr int bytes_between_searches = 16;
 
 constexpr std::size_t block_bytes_min = 1024; // a shorter block costs more bytes than it saves

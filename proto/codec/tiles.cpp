@@ -252,10 +252,10 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
         }
         Entities& to = snapshot.*part;
         const auto gather = [&](Column Entities::*column) {
-            for (const Found& one : found) {
-                const Column& from = tiles[one.tile]->*part.*column;
+            for (const Found& entity : found) {
+                const Column& from = tiles[entity.tile]->*part.*column;
                 if (!from.empty()) { // this kind has the column
-                    (to.*column).push_back(from[one.index]);
+                    (to.*column).push_back(from[entity.index]);
                 }
             }
         };

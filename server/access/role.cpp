@@ -35,18 +35,4 @@ v1::Role to_proto(Role role) {
     return v1::ROLE_UNSPECIFIED;
 }
 
-Role role_needed(const v1::RequestRules& rules, bool in_own_replay) {
-    if (in_own_replay && rules.viewer_in_own_replay()) {
-        return Role::Viewer;
-    }
-    switch (rules.role()) {
-    case v1::ROLE_VIEWER:
-        return Role::Viewer;
-    case v1::ROLE_CONTROLLER:
-        return Role::Controller;
-    default:
-        return Role::Admin;
-    }
-}
-
 } // namespace evod::access

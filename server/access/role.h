@@ -22,9 +22,4 @@ const char* name_of(Role role);
 std::optional<Role> role_named(std::string_view name);
 v1::Role to_proto(Role role);
 
-/// The lowest role that may send a request with these rules. If the rules state no role, an admin is needed.
-///
-/// in_own_replay  true: the request names a replay that its session has opened.
-Role role_needed(const v1::RequestRules& rules, bool in_own_replay);
-
 } // namespace evod::access

@@ -121,7 +121,7 @@ Result<void> write_tokens(const std::string& folder, int folder_descriptor, cons
 }
 
 /// Reads the file, applies `change` and writes the file. Locks the folder, so that no other process changes the file
-/// meanwhile.
+/// at the same time.
 template <class Change>
 Result<void> change_tokens(const std::string& folder, const Change& change) {
     std::error_code error;

@@ -1,7 +1,7 @@
 // Parameter descriptions: name, range, unit, default and help text of each parameter of the core.
 //
-// A folder lists its parameters once, as REAL, COUNT, FLAG and CHOICE lines (evolution/parameters.h,
-// parameters/parameters.h). Macros generate both the struct with its defaults and the descriptions from that list.
+// A folder lists its parameters once, as REAL, COUNT, FLAG and CHOICE lines (evolution/ga_parameters.h and
+// parameters/model_parameters.h). From that list, macros generate the struct with its defaults and the descriptions.
 // Validation, JSON files, the protocol, evoctl's help and docs/PARAMETERS.md use the descriptions, so a new parameter
 // needs only one new line.
 #pragma once

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "server/base/result.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include <iosfwd>
 

@@ -1,8 +1,8 @@
 // `evod parameters`: prints docs/PARAMETERS.md from the registry in the program.
-#include "server/parameters/parameters.h"
 #include "proto/command_line/command.h"
 #include "server/commands/commands.h"
 #include "server/parameters/choice_help.h"
+#include "server/parameters/model_parameters.h"
 
 #include <iostream>
 #include <string>

@@ -16,8 +16,8 @@ class ProgressLine {
   public:
     explicit ProgressLine(bool json = false) : json_{json} {}
 
-    /// share  finished share of the work, 0 to 1.
-    /// text   as below.
+    /// share  finished share of the work, 0 to 1; printed with --json.
+    /// text   returns the line, as for the other show(); printed on a terminal.
     template <class Text>
     void show(double share, Text&& text) {
         if (!json_) {

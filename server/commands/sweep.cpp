@@ -232,12 +232,12 @@ struct Executed {
 };
 
 /// Adds up the results of all processes. Returns the same in all of them; after an error in any process, a refusal.
-Result<Executed> add_up(const Result<std::size_t>& made, double busy_s, runtime::Processes& processes) {
-    if (auto agreed = agree(made ? Result<std::string>{""} : made.error(), processes); !agreed) {
+Result<Executed> add_up(const Result<std::size_t>& executed, double busy_s, runtime::Processes& processes) {
+    if (auto agreed = agree(executed ? Result<std::string>{""} : executed.error(), processes); !agreed) {
         return agreed.error();
     }
     Executed sum;
-    for (const std::string& part : processes.gather(base::pack(Executed{.runs = *made, .busy_s = busy_s}))) {
+    for (const std::string& part : processes.gather(base::pack(Executed{.runs = *executed, .busy_s = busy_s}))) {
         const auto there = base::unpack<Executed>(part);
         sum.runs += there.runs;
         sum.busy_s += there.busy_s;
@@ -265,8 +265,8 @@ Result<std::size_t> execute_runs(const std::vector<std::size_t>& runs, const Swe
     const std::vector<std::size_t> share = runner.share_of(runs);
     progress.emplace(share.size(), runner.work_of(share), options.json);
     const std::clock_t cpu = std::clock();
-    const auto made = runner.execute(share);
-    const auto all = add_up(made, static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC, processes);
+    const auto executed = runner.execute(share);
+    const auto all = add_up(executed, static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC, processes);
     progress->clear();
     if (!all) {
         return all.error();
@@ -312,8 +312,8 @@ std::vector<std::size_t> of_rank_0(const std::vector<std::size_t>& runs, runtime
 Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder,
                                  const std::string& out, runtime::Processes& processes) {
     if (options.run_files) {
-        if (auto made = folder.create_run_file_folder(); !made) {
-            return made.error();
+        if (auto created = folder.create_run_file_folder(); !created) {
+            return created.error();
         }
     }
     const std::vector<std::size_t> wanted = run_numbers(sweep, options.array_index);
@@ -335,14 +335,14 @@ Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep
     if (missing.empty()) {
         return 0;
     }
-    const auto made = execute_runs(missing, sweep, folder, options, processes);
-    if (!made) {
-        return made.error();
+    const auto executed = execute_runs(missing, sweep, folder, options, processes);
+    if (!executed) {
+        return executed.error();
     }
-    if (*made < missing.size()) {
+    if (*executed < missing.size()) {
         if (processes.rank() == 0 && !options.json) {
             std::printf("interrupted: %s left; the same command resumes the sweep\n",
-                        counted(missing.size() - *made, "run").c_str());
+                        counted(missing.size() - *executed, "run").c_str());
             std::fflush(stdout); // an mpirun that was interrupted kills its processes while they leave MPI
         }
         return exit_interrupted;

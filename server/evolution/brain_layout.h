@@ -9,7 +9,7 @@
 #pragma once
 
 #include "server/evolution/brain_input.h"
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 
 #include <array>
 #include <cstdint>

@@ -146,11 +146,11 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
         descendant.id = place;
         descendant.genes.resize(static_cast<std::size_t>(genes.rows()));
         descendant.from_second = GeneMask<>{static_cast<unsigned>(genes.rows())};
-        const Genes made{descendant.genes};
+        const Genes child_genes{descendant.genes};
         if (place < choice.places.survivors) {
             const std::uint32_t organism = choice.survivors()[place];
             descendant.parents = {organism, organism};
-            descent.keep(organism, place, parameters.mutate_survivors && place >= choice.places.elite, made,
+            descent.keep(organism, place, parameters.mutate_survivors && place >= choice.places.elite, child_genes,
                          WithRecord{descendant});
         } else {
             const std::uint32_t child = place - choice.places.survivors;
@@ -163,7 +163,7 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
             descendant.parents = inheritance.parents;
             descendant.from_second = inheritance.from_second;
             descendant.second_share = mixture.second_share;
-            descent.make_child(inheritance, mixture.second_share, place, made, WithRecord{descendant});
+            descent.make_child(inheritance, mixture.second_share, place, child_genes, WithRecord{descendant});
         }
         descendant.first_genes = chromosome(genes, descendant.parents.first);
         descendant.second_genes = chromosome(genes, descendant.parents.second);

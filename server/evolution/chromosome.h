@@ -5,8 +5,8 @@
 #pragma once
 
 #include "server/base/random.h"
+#include "server/evolution/ga_parameters.h"
 #include "server/evolution/gene_layout.h"
-#include "server/evolution/parameters.h"
 
 #include <Eigen/Core>
 

@@ -12,8 +12,8 @@
 #include "server/base/random.h"
 #include "server/evolution/chance.h"
 #include "server/evolution/chromosome.h"
+#include "server/evolution/ga_parameters.h"
 #include "server/evolution/gene_mask.h"
-#include "server/evolution/parameters.h"
 
 #include <cstdint>
 #include <span>

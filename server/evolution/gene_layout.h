@@ -5,7 +5,7 @@
 //              generations of a run have the same layout. The bounds may change between two generations.
 #pragma once
 
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 
 #include <Eigen/Core>
 

@@ -9,7 +9,7 @@
 
 #include "server/base/random.h"
 #include "server/evolution/chromosome.h"
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 #include "server/evolution/ranking.h"
 
 #include <cstdint>

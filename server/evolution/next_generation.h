@@ -13,8 +13,8 @@
 #include "server/base/executor.h"
 #include "server/base/random.h"
 #include "server/evolution/chromosome.h"
+#include "server/evolution/ga_parameters.h"
 #include "server/evolution/pairing.h"
-#include "server/evolution/parameters.h"
 #include "server/evolution/price.h"
 
 #include <cstdint>

@@ -32,17 +32,17 @@ class Numbers {
         }
         return *this;
     }
-    friend Numbers operator-(Numbers one, const Numbers& other) {
+    friend Numbers operator-(Numbers numbers, const Numbers& other) {
         for (unsigned pair = 0; pair < pair_count; ++pair) {
-            one.pairs_[pair] -= other.pairs_[pair];
+            numbers.pairs_[pair] -= other.pairs_[pair];
         }
-        return one;
+        return numbers;
     }
-    friend Numbers middle_of(Numbers one, const Numbers& other) {
+    friend Numbers middle_of(Numbers numbers, const Numbers& other) {
         for (unsigned pair = 0; pair < pair_count; ++pair) {
-            one.pairs_[pair] = (one.pairs_[pair] + other.pairs_[pair]) * 0.5;
+            numbers.pairs_[pair] = (numbers.pairs_[pair] + other.pairs_[pair]) * 0.5;
         }
-        return one;
+        return numbers;
     }
 
   private:

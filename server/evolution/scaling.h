@@ -5,7 +5,7 @@
 // Determinism  weights are computed one by one, in order of index or rank.
 #pragma once
 
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 #include "server/evolution/ranking.h"
 
 #include <cstdint>

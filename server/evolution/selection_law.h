@@ -9,7 +9,7 @@
 //              binomial or hypergeometric number of contestants, limited to the number of winners.
 #pragma once
 
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 #include "server/evolution/selection.h"
 
 #include <cstdint>

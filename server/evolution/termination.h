@@ -4,7 +4,7 @@
 // Determinism  the outcome depends only on Progress, which is part of a world's state, and on the parameters.
 #pragma once
 
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 
 #include <cstdint>
 

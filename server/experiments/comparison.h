@@ -10,7 +10,7 @@
 
 #include "server/base/random.h"
 #include "server/experiments/paired_test.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 
 #include <cstdint>

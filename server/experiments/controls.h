@@ -5,7 +5,7 @@
 // Threads  none.
 #pragma once
 
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 
 #include <string>

@@ -193,10 +193,10 @@ RunRecording::read_statistics(const std::function<void(const std::vector<simulat
 Result<void> RunRecording::begin(const simulation::World& world, const simulation::RunId& run_id) {
     const std::uint64_t generation = world.moment().generation;
     if (stored_ == Stored::Nothing) {
-        news_ = {world.moment().tick, generation, 0};
+        new_records_ = {world.moment().tick, generation, 0};
         return create(run_id, run_file::beginning_of(world), world);
     }
-    news_ = {hashes_.empty() ? world.moment().tick : hashes_.back().tick, generation, generations_ended_};
+    new_records_ = {hashes_.empty() ? world.moment().tick : hashes_.back().tick, generation, generations_ended_};
     auto file = RunFile::open(path_, {});
     if (!file) {
         return file.error();
@@ -220,7 +220,7 @@ Result<void> RunRecording::create(const simulation::RunId& run_id, const run_fil
 }
 
 Result<void> RunRecording::follow(const simulation::World& world) {
-    news_.report(world, [this](const auto& record) { file_->write(record); });
+    new_records_.report(world, [this](const auto& record) { file_->write(record); });
     if (compared_ < hashes_.size() && hashes_[compared_].tick == world.moment().tick &&
         hashes_[compared_++].hash != world.hash()) {
         return refusal(RefusalCode::DataLoss, path_ + " is damaged: the stored state hash of tick " +

@@ -85,7 +85,7 @@ class RunRecording {
     std::uint64_t generations_ended_ = 0;
     std::vector<run_file::HashRecord> hashes_; // stored hashes of that generation
     std::size_t compared_ = 0;                 // number of hashes_ that have been compared
-    recording::NewRecordFinder news_;
+    recording::NewRecordFinder new_records_;
 };
 
 } // namespace evod::experiments

@@ -28,7 +28,7 @@ base::Result<void> RunWriter::follow(const simulation::World& world) {
         return file_.error();
     }
     run_file::RunFile& file = **file_;
-    news_.report(world, [&file](const auto& record) { file.write(record); });
+    new_records_.report(world, [&file](const auto& record) { file.write(record); });
     if (!world.generation_over()) {
         return {};
     }
@@ -47,7 +47,7 @@ base::Result<void> RunWriter::finish() {
         return file_.error();
     }
     run_file::RunFile& file = **file_;
-    file.write(run_file::EndMark{.tick = news_.tick()});
+    file.write(run_file::EndMark{.tick = new_records_.tick()});
     if (auto committed = file.commit(); !committed) {
         return committed;
     }

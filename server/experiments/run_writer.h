@@ -32,7 +32,7 @@ class RunWriter {
   private:
     const std::string path_, temporary_path_;
     base::Result<std::unique_ptr<run_file::RunFile>> file_;
-    recording::NewRecordFinder news_; // the records that have been written
+    recording::NewRecordFinder new_records_; // the records that have been written
 };
 
 } // namespace evod::experiments

@@ -206,8 +206,8 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
                            result +
                                " exists, but the sweep.txt of its sweep is missing: name another folder with --out");
         }
-        if (auto made = create_folder(path); !made) {
-            return made.error();
+        if (auto created = create_folder(path); !created) {
+            return created.error();
         }
         AtomicFile file{of_sweep};
         file.write(provenance);
@@ -222,8 +222,8 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
     if (*there != provenance) {
         return other_sweep_refusal(path, *there, sweep);
     }
-    if (auto made = create_folder(path + "/parts"); !made) {
-        return made.error();
+    if (auto created = create_folder(path + "/parts"); !created) {
+        return created.error();
     }
     return SweepFolder{path, sweep};
 }

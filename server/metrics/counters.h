@@ -44,15 +44,15 @@ class TimeHistogram {
     /// Inclusive upper bounds of the buckets: 1, 2 and 5 in every decade from 0.1 µs to 1 s. The last bucket has no
     /// bound.
     static constexpr std::array<duration, 22> bounds = [] {
-        std::array<duration, 22> made{};
+        std::array<duration, 22> table{};
         duration decade{100};
-        for (std::size_t i = 0; i < made.size(); ++i) {
-            made[i] = decade * std::array{1, 2, 5}[i % 3];
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            table[i] = decade * std::array{1, 2, 5}[i % 3];
             if (i % 3 == 2) {
                 decade *= 10;
             }
         }
-        return made;
+        return table;
     }();
 
     /// times  number of measurements with this duration.
@@ -81,19 +81,19 @@ class TimeHistogram {
         return bucket + (ns > bounds_ns[bucket] ? 1 : 0);
     }
     static constexpr std::array<std::uint64_t, bounds.size() + 1> bounds_ns = [] {
-        std::array<std::uint64_t, bounds.size() + 1> made{};
-        std::ranges::transform(bounds, made.begin(), [](duration bound) { return bound.count(); });
-        made.back() = ~std::uint64_t{0};
-        return made;
+        std::array<std::uint64_t, bounds.size() + 1> table{};
+        std::ranges::transform(bounds, table.begin(), [](duration bound) { return bound.count(); });
+        table.back() = ~std::uint64_t{0};
+        return table;
     }();
     /// Element i is the bucket of the smallest number that has i bits.
     static constexpr std::array<std::size_t, 65> first_bucket = [] {
-        std::array<std::size_t, 65> made{};
-        for (std::size_t width = 1; width < made.size(); ++width) {
-            made[width] = static_cast<std::size_t>(
+        std::array<std::size_t, 65> table{};
+        for (std::size_t width = 1; width < table.size(); ++width) {
+            table[width] = static_cast<std::size_t>(
                 std::ranges::lower_bound(bounds_ns, std::uint64_t{1} << (width - 1)) - bounds_ns.begin());
         }
-        return made;
+        return table;
     }();
 
     std::array<Counter, bounds.size() + 1> counts_;

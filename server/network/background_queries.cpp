@@ -4,7 +4,7 @@
 #include "server/protocol/breeding.h"
 #include "server/protocol/refusals.h"
 #include "server/replay/breeding.h"
-#include "server/runtime/fork_check.h"
+#include "server/runtime/fork.h"
 #include "server/runtime/worker_pool.h"
 
 #include <algorithm>
@@ -143,7 +143,7 @@ void BackgroundQueries::send_next_part(Session& session, std::uint64_t request_i
                                          std::to_string(request.export_id())}},
                          .reason = base::Reason::ExportNotFound}));
     }
-    if (found->second.asked) {
+    if (found->second.part_requested) {
         return session.answer(protocol::refusing(
             request_id, refusal(RefusalCode::FailedPrecondition,
                                 "the previous request for a part is not answered yet: wait for its answer",
@@ -156,7 +156,7 @@ void BackgroundQueries::send_next_part(Session& session, std::uint64_t request_i
 }
 
 void BackgroundQueries::ask(const Session& session, std::uint64_t request_id, Export& from) {
-    from.asked = true;
+    from.part_requested = true;
     from.job->next({.session = session.number(), .request_id = request_id, .export_id = from.id});
 }
 
@@ -188,7 +188,7 @@ void BackgroundQueries::on_done(runtime::ExportPartDone done) {
     // The session may have started another export in the meantime.
     if (const auto found = exports_.find(request.session);
         found != exports_.end() && found->second.id == request.export_id) {
-        found->second.asked = false;
+        found->second.part_requested = false;
         if (found->second.job && !done.part && done.part.error().code == RefusalCode::FailedPrecondition) {
             limit_counters_.met(Limit::ExportPatience);
         }

@@ -97,7 +97,7 @@ class BackgroundQueries {
         std::string user;
         std::unique_ptr<runtime::ExportJob> job; // nullptr: another user has got the place
         std::unique_ptr<HeldMemory> held;        // of the job
-        bool asked = false;                      // the client has requested the next part and has not received it yet
+        bool part_requested = false;             // the client has requested the next part and has not received it yet
         bool has_place = true;                   // it counts in the pool
     };
     using Exports = std::map<std::uint64_t, Export>; // key: number of the session

@@ -126,7 +126,7 @@ void Commands::handle(Session& session, const v1::Request& request) {
         return session.answer(refused(command.error()));
     }
 
-    const UserKey key{session.visitor().name, request.client_key()};
+    const UserKey key{session.user().name, request.client_key()};
     std::string bytes = bytes_of(request);
     // The command, its bytes in the mail, and those in the reply cache.
     const std::size_t held = request.SpaceUsedLong() + 2 * bytes.size();
@@ -236,7 +236,7 @@ void Commands::on_refused(const runtime::CommandMail& mail, const base::Refusal&
 std::optional<base::Refusal> Commands::renew_lease(const Session& session, const v1::Request& request,
                                                    const std::string& world) {
     const std::string& key = request.client_key();
-    if (leases_.renew(world, {session.visitor().name, key})) {
+    if (leases_.renew(world, {session.user().name, key})) {
         return std::nullopt;
     }
     return base::Refusal{.code = base::RefusalCode::FailedPrecondition,

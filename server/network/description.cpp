@@ -38,8 +38,8 @@ v1::Description make_description() {
 } // namespace
 
 const v1::Description& description() {
-    static const v1::Description made = make_description();
-    return made;
+    static const v1::Description description = make_description();
+    return description;
 }
 
 } // namespace evod::network

@@ -1,6 +1,6 @@
 #include "server/network/dispatcher.h"
 
-#include "server/access/role.h"
+#include "server/access/authorization.h"
 #include "server/base/overloaded.h"
 #include "server/log/log.h"
 #include "server/network/description.h"
@@ -133,11 +133,10 @@ void Dispatcher::handle(Session& session, v1::Request request) {
                    session.number(), session.by(), protocol::name_of(request), request.request_id());
     }
     const bool in_own_replay = session.replays.contains(protocol::world_of(request));
-    if (const auto needed = access::role_needed(*rules, in_own_replay); session.visitor().role < needed) {
-        return refuse_it(refusal(base::RefusalCode::PermissionDenied,
-                                 protocol::name_of(request) + " needs the role " + access::name_of(needed) +
-                                     "; this session has the role " + access::name_of(session.visitor().role) +
-                                     ": connect with a token of that role"));
+    if (const auto permitted =
+            access::authorize(session.user().role, *rules, protocol::name_of(request), in_own_replay);
+        !permitted) {
+        return refuse_it(permitted.error());
     }
     if (request.request_id() == 0) {
         return refuse_it(protocol::invalid({{"request_id", "at least 1", "0"}}));
@@ -248,12 +247,12 @@ bool Dispatcher::ask(Session& session, std::uint64_t request_id, std::string_vie
 }
 
 void Dispatcher::ask(Session& session, v1::Request request) {
-    const auto asked = std::make_shared<const v1::Request>(std::move(request));
-    const bool users_only = session.visitor().role < access::Role::Controller;
-    if (ask(session, asked->request_id(), protocol::world_of(*asked),
-            runtime::QueryMail{session.number(), asked, users_only, session.account()})) {
+    const auto shared_request = std::make_shared<const v1::Request>(std::move(request));
+    const bool users_only = session.user().role < access::Role::Controller;
+    if (ask(session, shared_request->request_id(), protocol::world_of(*shared_request),
+            runtime::QueryMail{session.number(), shared_request, users_only, session.account()})) {
         session.requests.query_under_way = true;
-        session.requests.expect(held_bytes(*asked));
+        session.requests.expect(held_bytes(*shared_request));
     }
 }
 
@@ -382,10 +381,10 @@ void Dispatcher::on_done(const runtime::ReplayMemory& memory) {
 }
 
 void Dispatcher::find_run(Session& session, v1::Request request) {
-    const auto asked = std::make_shared<const v1::Request>(std::move(request));
-    const std::string world = protocol::lookup_name(protocol::world_of(*asked));
-    if (ask(session, asked->request_id(), world, runtime::FindRun{world, session.number(), asked})) {
-        session.requests.expect(held_bytes(*asked));
+    const auto shared_request = std::make_shared<const v1::Request>(std::move(request));
+    const std::string world = protocol::lookup_name(protocol::world_of(*shared_request));
+    if (ask(session, shared_request->request_id(), world, runtime::FindRun{world, session.number(), shared_request})) {
+        session.requests.expect(held_bytes(*shared_request));
     }
 }
 
@@ -401,7 +400,7 @@ void Dispatcher::on_done(runtime::RunFound done) {
         session->answer(protocol::refusing(id, protocol::with_paths(done.run.error(), protocol::name_of(request))));
     } else if (request.has_export_run()) {
         background_queries_.begin_export(*session, id, done.run->run,
-                                         wanted(request.export_run(), session->visitor().role));
+                                         wanted(request.export_run(), session->user().role));
     } else {
         background_queries_.ask_breeding(*session, request, *std::move(done.run));
     }

@@ -10,37 +10,37 @@
 
 namespace evod::network {
 
-void Housekeeping::start(access::Gate& gate) {
+void Housekeeping::start(access::Authenticator& authenticator) {
     checked_at_ = host_.clock->now();
-    schedule(gate);
+    schedule(authenticator);
 }
 
-void Housekeeping::schedule(access::Gate& gate) {
+void Housekeeping::schedule(access::Authenticator& authenticator) {
     timer_.expires_after(housekeeping_interval);
-    timer_.async_wait([this, &gate](boost::system::error_code error) {
+    timer_.async_wait([this, &authenticator](boost::system::error_code error) {
         if (error) {
             return;
         }
-        check_tokens(gate);
+        check_tokens(authenticator);
         const auto now = host_.clock->now();
         check_clients(now);
         trim_heap(now);
-        schedule(gate);
+        schedule(authenticator);
     });
 }
 
-void Housekeeping::check_tokens(access::Gate& gate) {
-    if (!gate.refresh()) {
+void Housekeeping::check_tokens(access::Authenticator& authenticator) {
+    if (!authenticator.refresh()) {
         return;
     }
-    if (gate.file_problem()) {
-        log::error("{}; new connections are refused until this is fixed", gate.file_problem()->message);
+    if (authenticator.file_problem()) {
+        log::error("{}; new connections are refused until this is fixed", authenticator.file_problem()->message);
     }
     // fail() may remove sessions from the table, so the loop iterates over a copy.
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{table_.sessions().begin(),
                                                                      table_.sessions().end()};
     for (const auto& [number, session] : sessions) {
-        if (session->greeted() && !gate.file_problem() && !gate.is_still_valid(session->visitor())) {
+        if (session->greeted() && !authenticator.file_problem() && !authenticator.is_still_valid(session->user())) {
             session->fail(refusal(base::RefusalCode::Unauthenticated,
                                   "the token has been revoked: ask the operator of the server for a new one",
                                   base::Reason::TokenRevoked));

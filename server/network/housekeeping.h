@@ -3,7 +3,7 @@
 // Owner        the server, on the network thread.
 #pragma once
 
-#include "server/access/gate.h"
+#include "server/access/authentication.h"
 #include "server/network/session_table.h"
 #include "server/runtime/clock.h"
 
@@ -20,13 +20,13 @@ class Housekeeping {
     Housekeeping(asio::io_context& context, const SessionTable& table, SessionHost& host)
         : table_{table}, host_{host}, timer_{context} {}
 
-    /// gate  must outlive the checks.
-    void start(access::Gate& gate);
+    /// authenticator  must outlive the checks.
+    void start(access::Authenticator& authenticator);
     void stop() { timer_.cancel(); }
 
   private:
-    void schedule(access::Gate& gate);
-    void check_tokens(access::Gate& gate);
+    void schedule(access::Authenticator& authenticator);
+    void check_tokens(access::Authenticator& authenticator);
     void check_clients(runtime::Clock::time_point now);
     /// Returns free memory to the system. Answered requests and ended sessions leave fragmented free memory, which
     /// malloc does not return by itself.

@@ -268,7 +268,7 @@ std::optional<HttpAnswer> HttpConnection::refusal_of_upgrade(const Request& requ
                       http::token_list{request[http::field::connection]}.exists("upgrade");
     if (!asks || request[http::field::sec_websocket_version] != "13") {
         HttpAnswer answer =
-            refused(http::status::upgrade_required, path + " is a WebSocket of version 13: send such a handshake");
+            refused(http::status::upgrade_required, path + " accepts only WebSocket handshakes (RFC 6455, version 13)");
         answer.fields.emplace_back(http::field::upgrade, "websocket");
         answer.fields.emplace_back(http::field::connection, "Upgrade");
         answer.fields.emplace_back(http::field::sec_websocket_version, "13");
@@ -283,13 +283,13 @@ std::optional<HttpAnswer> HttpConnection::refusal_of_upgrade(const Request& requ
 
 std::optional<HttpAnswer> HttpConnection::refusal_of_token(const Request& request) {
     const std::string token = bearer_token(request[http::field::authorization]);
-    const auto visitor = service_.admit(token, address_prefix_);
-    if (visitor) {
+    const auto user = service_.admit(token, address_prefix_);
+    if (user) {
         return std::nullopt;
     }
     service_.traffic.http_refused_tokens.add();
-    const auto code = visitor.error().code;
-    const std::string why = protocol::public_text(visitor.error().message);
+    const auto code = user.error().code;
+    const std::string why = protocol::public_text(user.error().message);
     HttpAnswer answer = refused(code == base::RefusalCode::Unauthenticated     ? http::status::unauthorized
                                 : code == base::RefusalCode::ResourceExhausted ? http::status::too_many_requests
                                                                                : http::status::service_unavailable,
@@ -332,14 +332,14 @@ HttpAnswer HttpConnection::file(const Request& request, const std::string& path)
 }
 
 HttpAnswer HttpConnection::no_such_page() const {
-    std::string known;
+    std::string paths;
     for (const HttpFile& file : service_.files) {
-        known += std::string{file.compressed.path} + ", ";
+        paths += std::string{file.compressed.path} + ", ";
     }
     for (const auto& [path, page] : service_.pages) {
-        known += path + ", ";
+        paths += path + ", ";
     }
-    return refused(http::status::not_found, "no such page; available: " + known + std::string{session_path});
+    return refused(http::status::not_found, "no such page; available: " + paths + std::string{session_path});
 }
 
 asio::awaitable<bool> HttpConnection::send(HttpAnswer answer, unsigned version, bool only_header, bool keep_alive) {

@@ -6,7 +6,7 @@
 // Source       RFC 9110 and RFC 9112. Boost.Beast parses requests.
 #pragma once
 
-#include "server/access/gate.h"
+#include "server/access/authentication.h"
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
 #include "server/network/http_rules.h"
@@ -66,7 +66,8 @@ struct HttpService {
     /// The key is the path of a page, such as "/metrics".
     std::map<std::string, HttpPage, std::less<>> pages = {};
     /// Authenticates a client by its token and address.
-    std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
+    std::function<base::Result<access::AuthenticatedUser>(const std::string& token, const std::string& address)> admit =
+        {};
     /// Takes over a connection whose client has opened a WebSocket.
     std::function<void(std::unique_ptr<Transport>)> session = {};
     std::function<void(const HttpConnection&)> ended = {}; // called once, when the connection has ended

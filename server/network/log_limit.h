@@ -5,7 +5,7 @@
 #pragma once
 
 #include "server/network/limits.h"
-#include "server/network/token_bucket.h"
+#include "server/network/rate_limit.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -26,7 +26,7 @@ class LogLimit {
         }
         User& lines = users_.try_emplace(user, User{{session_lines_per_s, session_lines_burst, now}}).first->second;
         lines.used = now;
-        if (!lines.bucket.take(1, now)) {
+        if (!lines.limit.take(1, now)) {
             ++lines.left_out;
             return std::nullopt;
         }
@@ -35,7 +35,7 @@ class LogLimit {
 
   private:
     struct User {
-        TokenBucket bucket;
+        RateLimit limit;
         std::uint64_t left_out = 0;
         runtime::Clock::time_point used = {};
     };

@@ -293,9 +293,9 @@ void ReplyCache::evict(Keys::value_type& item) {
 }
 
 void ReplyCache::remember_evicted(const base::StateHash& hash, const std::string& account, std::uint64_t highest_id) {
-    if (const auto known = evicted_.find(hash); known != evicted_.end()) { // it becomes the newest one
-        highest_id = std::max(highest_id, known->second.highest_id);
-        forget_evicted(known);
+    if (const auto entry = evicted_.find(hash); entry != evicted_.end()) { // it becomes the newest one
+        highest_id = std::max(highest_id, entry->second.highest_id);
+        forget_evicted(entry);
     }
     Account& owner = accounts_[account];
     evicted_.emplace(hash, Evicted{highest_id, account, owner.evicted.insert(owner.evicted.end(), hash)});

@@ -55,11 +55,11 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (!opened) {
         return opened.error();
     }
-    auto gate = access::Gate::open(listeners.token_folder, needs_token(listeners));
-    if (!gate) {
-        return gate.error();
+    auto authenticator = access::Authenticator::open(listeners.token_folder, needs_token(listeners));
+    if (!authenticator) {
+        return authenticator.error();
     }
-    server->gate_ = *std::move(gate);
+    server->authenticator_ = *std::move(authenticator);
     auto listener = Listener::open(server->context_, listeners.bind_address, listeners.port);
     if (!listener) {
         return listener.error();
@@ -103,7 +103,7 @@ Server::Server(ServerOptions options)
     host_.make_room = [this](const std::string& account) { return table_.make_room(account); };
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
     host_.admit = [this](const std::string& token, const std::string& address) {
-        return gate_->admit(token, address, access::Gate::Clock::now());
+        return authenticator_->admit(token, address, access::Authenticator::Clock::now());
     };
     host_.shared_snapshot_bytes = [this] { return streams_.shared_bytes(); };
     host_.ended = [this](Session& session) {
@@ -197,7 +197,7 @@ bool Server::run() {
     });
 
     wait_for_signal();
-    housekeeping_.start(*gate_);
+    housekeeping_.start(*authenticator_);
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) {
         table_.accept(std::make_unique<Transport>(std::move(socket), tls_.get()));
     }),

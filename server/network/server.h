@@ -81,7 +81,7 @@ class Server {
     std::unique_ptr<Http> http_; // nullptr: no HTTP
 
     std::unique_ptr<asio::ssl::context> tls_; // nullptr: no TLS
-    std::optional<access::Gate> gate_;
+    std::optional<access::Authenticator> authenticator_;
 
     std::unique_ptr<base::Executor> executor_;
     std::unique_ptr<replay::Archive> archive_;  // nullptr: runs are not stored

@@ -70,7 +70,7 @@ void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max
     std::map<std::string, std::uint64_t> by_role{{"admin", 0}, {"controller", 0}, {"viewer", 0}, {"none", 0}};
     std::uint64_t snapshots = 0, events = 0;
     for (const auto& [session_number, session] : all) {
-        ++by_role[session->greeted() ? access::name_of(session->visitor().role) : "none"];
+        ++by_role[session->greeted() ? access::name_of(session->user().role) : "none"];
         snapshots += session->snapshots.subscriptions.size();
         events += session->events.size();
     }
@@ -188,7 +188,7 @@ v1::Metrics Server::metrics() {
     add_queues(all, simulations_.mailbox_places(), outbox_.fill());
     add_sessions(all, table_.sessions(), options_.limits.sessions_max);
     add_counter(all, "evod_logins_failed_total", "Logins with an unknown token")
-        .add(number(gate_->failed_login_count()));
+        .add(number(authenticator_->failed_login_count()));
     add_gauge(all, "evod_client_buffer_bytes",
               "Memory of all sessions: data to send, requests and exports, subscriptions and snapshots, replays, "
               "incomplete frames")

@@ -46,8 +46,8 @@ Session::Session(std::unique_ptr<Transport> transport, SessionHost& host, std::u
     , reader_bytes_{host.send_memory}
     , subscription_bytes_{host.send_memory}
     , replay_bytes_{host.send_memory}
-    , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
-    , empty_frames_{empty_frames_per_s_max, empty_frames_burst_max, host.clock->now()}
+    , rate_limit_{requests_per_s_max, request_burst_max, host.clock->now()}
+    , empty_frame_limit_{empty_frames_per_s_max, empty_frames_burst_max, host.clock->now()}
     , turn_{transport_->socket().get_executor()}
     , queue_{host.send_memory}
     , writer_{transport_->socket().get_executor()} {
@@ -146,7 +146,7 @@ void Session::update_frame_deadline() {
 
 std::uint32_t Session::control_frame_bytes_max() const {
     const std::uint32_t most = host_.limits.control_frame_bytes_max();
-    return visitor_->role < access::Role::Admin ? std::min(most, frame_bytes_max_below_admin) : most;
+    return user_->role < access::Role::Admin ? std::min(most, frame_bytes_max_below_admin) : most;
 }
 
 v1::Limits Session::limits() const {
@@ -156,7 +156,7 @@ v1::Limits Session::limits() const {
 }
 
 base::Actor Session::actor() const {
-    return base::client_actor(visitor_ ? visitor_->name : "", client_, to_text(peer_));
+    return base::client_actor(user_ ? user_->name : "", client_, to_text(peer_));
 }
 
 // ---- reading ---------------------------------------------------------------------------------------------------
@@ -230,8 +230,8 @@ asio::awaitable<void> Session::read() {
             }
             end(Deadline::Frame); // the time limit of a frame does not apply while the session does not read
             const double cost = 1 + std::floor(static_cast<double>((*frame)->body.size()) / bytes_per_turn);
-            if (!turns_to_send_.take(cost, host_.clock->now())) {
-                co_await wait_for_turn(cost);
+            if (!rate_limit_.take(cost, host_.clock->now())) {
+                co_await wait_for_rate_limit(cost);
             }
             const bool is_large = LargeFrames::contains((*frame)->body.size());
             if (is_large) {
@@ -265,7 +265,7 @@ void Session::count_empty_frames() {
     if (transport_->control_waits()) {
         writer_.notify();
     }
-    if (count > 0 && !empty_frames_.take(static_cast<double>(count), host_.clock->now())) {
+    if (count > 0 && !empty_frame_limit_.take(static_cast<double>(count), host_.clock->now())) {
         host_.limit_counters.met(Limit::RequestsPerSecond);
         host_.limit_counters.met(Limit::RequestBurst);
         fail(refusal(base::RefusalCode::ResourceExhausted,
@@ -275,12 +275,12 @@ void Session::count_empty_frames() {
     }
 }
 
-asio::awaitable<void> Session::wait_for_turn(double cost) {
+asio::awaitable<void> Session::wait_for_rate_limit(double cost) {
     host_.limit_counters.met(Limit::RequestsPerSecond);
     host_.limit_counters.met(Limit::RequestBurst);
     do {
-        co_await turn_.wait(Signal::Timer::clock_type::now() + turns_to_send_.time_for(request_burst_max / 10));
-    } while (!is_over() && !turns_to_send_.take(cost, host_.clock->now()));
+        co_await turn_.wait(Signal::Timer::clock_type::now() + rate_limit_.time_for(request_burst_max / 10));
+    } while (!is_over() && !rate_limit_.take(cost, host_.clock->now()));
 }
 
 asio::awaitable<void> Session::wait_for_large_frame() {
@@ -360,16 +360,16 @@ void Session::on_hello(const v1::Hello& hello) {
     if (const auto refused = protocol::refusal_of(hello)) {
         return fail(*refused);
     }
-    auto visitor = host_.admit(hello.token(), address_prefix_);
-    if (!visitor) {
-        return fail(visitor.error());
+    auto user = host_.admit(hello.token(), address_prefix_);
+    if (!user) {
+        return fail(user.error());
     }
-    const std::string account = account_of(visitor->name, address_prefix_);
+    const std::string account = account_of(user->name, address_prefix_);
     if (const auto refused = host_.make_room(account)) {
         return fail(*refused);
     }
     account_ = account;
-    visitor_ = *std::move(visitor);
+    user_ = *std::move(user);
     if (hello.frame_bytes_max() != 0) {
         queue_.set_frame_bytes_max(hello.frame_bytes_max());
         snapshots.set_frame_bytes_max(hello.frame_bytes_max());
@@ -377,7 +377,7 @@ void Session::on_hello(const v1::Hello& hello) {
     end(Deadline::Hello);
     reader_.set_limits({.control_bytes_max = control_frame_bytes_max(), .stream_bytes_max = std::nullopt});
     client_ = protocol::client_name_of(hello);
-    log_connection("connected as " + std::string{access::name_of(visitor_->role)} + ", version " +
+    log_connection("connected as " + std::string{access::name_of(user_->role)} + ", version " +
                    (hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version())));
 
     v1::ServerMessage message;
@@ -394,8 +394,8 @@ void Session::on_hello(const v1::Hello& hello) {
     if (host_.storage) {
         *welcome.mutable_storage() = *host_.storage;
     }
-    welcome.set_role(access::to_proto(visitor_->role));
-    welcome.set_user(visitor_->name);
+    welcome.set_role(access::to_proto(user_->role));
+    welcome.set_user(user_->name);
     if (!host_.page.is_local || peer_.address().is_loopback()) {
         welcome.set_page_port(host_.page.port);
         welcome.set_page_host(host_.page.host);

@@ -15,7 +15,7 @@
 
 #include "evod/v1/session.pb.h"
 #include "proto/codec/framing.h"
-#include "server/access/gate.h"
+#include "server/access/authentication.h"
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
 #include "server/network/client_watch.h"
@@ -24,11 +24,11 @@
 #include "server/network/log_limit.h"
 #include "server/network/messages.h"
 #include "server/network/page_address.h"
+#include "server/network/rate_limit.h"
 #include "server/network/requests_in_flight.h"
 #include "server/network/send_memory.h"
 #include "server/network/send_queue.h"
 #include "server/network/signal.h"
-#include "server/network/token_bucket.h"
 #include "server/network/transport.h"
 #include "server/runtime/clock.h"
 #include "server/streaming/snapshot_queue.h"
@@ -76,7 +76,8 @@ struct SessionHost {
     LargeFrames large_frames = {};
     std::string frame = {}; // reused buffer in which frames of snapshots are assembled
     /// Authenticates a client by its token and address.
-    std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
+    std::function<base::Result<access::AuthenticatedUser>(const std::string& token, const std::string& address)> admit =
+        {};
     /// Makes room for one more session of this account. Returns nullopt, or why there is none.
     std::function<std::optional<base::Refusal>(const std::string& account)> make_room = [](const std::string&) {
         return std::nullopt;
@@ -102,7 +103,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void start(const std::optional<base::Refusal>& refusal = {});
 
     std::uint64_t number() const { return number_; }
-    bool greeted() const { return visitor_.has_value(); }
+    bool greeted() const { return user_.has_value(); }
     /// The client of this session.
     base::Actor actor() const;
     /// The client of this session for log lines: "anna: evoview 127.0.0.1:51234".
@@ -110,7 +111,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     /// The limits that apply to the role of this session.
     v1::Limits limits() const;
     /// The user of the session, which must have received its Hello.
-    const access::Visitor& visitor() const { return *visitor_; }
+    const access::AuthenticatedUser& user() const { return *user_; }
     /// The IPv4 address, or the prefix of the IPv6 address that identifies one site.
     const std::string& address_prefix() const { return address_prefix_; }
     /// Whose quota the session uses: the name of its token or, without a token, its address prefix.
@@ -146,7 +147,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     /// bytes  its part of this memory
     void evict(std::string_view why, std::size_t bytes);
     /// Makes the rate limit count so many frames more, because a request causes as much work.
-    void charge(std::size_t frames) { turns_to_send_.charge(static_cast<double>(frames)); }
+    void charge(std::size_t frames) { rate_limit_.charge(static_cast<double>(frames)); }
     /// Sets the memory of the session's replays and seeks.
     void hold_replays(std::size_t bytes) { replay_bytes_.set(phase_ == Phase::Ended ? 0 : bytes); }
     /// Must be called after the subscriptions to snapshots have changed.
@@ -185,7 +186,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     void on_missed(Deadline deadline);
     asio::awaitable<void> write();
     /// Waits until the rate limit allows a frame of this cost.
-    asio::awaitable<void> wait_for_turn(double cost);
+    asio::awaitable<void> wait_for_rate_limit(double cost);
     /// Waits until a large frame of this user may be parsed.
     asio::awaitable<void> wait_for_large_frame();
     /// Stops reading, and calls fail() once all requests are answered.
@@ -214,7 +215,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
     const tcp::endpoint peer_;
     const std::string address_prefix_;
     std::string account_, client_;
-    std::optional<access::Visitor> visitor_; // nullopt: no Hello was received
+    std::optional<access::AuthenticatedUser> user_; // nullopt: no Hello was received
     Phase phase_ = Phase::Connecting;
     Deadline deadline_ = Deadline::None;
     asio::steady_timer deadline_timer_;
@@ -223,7 +224,7 @@ class Session : public std::enable_shared_from_this<Session>, private streaming:
 
     codec::FrameReader reader_{codec::hello_limits};
     SendMemory::Reservation reader_bytes_, subscription_bytes_, replay_bytes_;
-    TokenBucket turns_to_send_, empty_frames_;
+    RateLimit rate_limit_, empty_frame_limit_;
     Signal turn_; // ends a wait of the coroutine that reads
     ClientWatch watch_;
 

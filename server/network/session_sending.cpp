@@ -22,7 +22,7 @@ static_assert(gathered_parts_max + 2 <= Transport::buffers_at_once, "there are a
 } // namespace
 
 void Session::answer(SharedBytes frame) {
-    turns_to_send_.charge(static_cast<double>(frame->size() / answer_bytes_per_turn));
+    rate_limit_.charge(static_cast<double>(frame->size() / answer_bytes_per_turn));
     if (queue_.accepts(frame->size())) {
         return enqueue(std::move(frame), Kind::Answer);
     }

@@ -92,7 +92,7 @@ void Streams::publish(v1::Event event) {
         if (!wanted && !ends_snapshots) {
             continue;
         }
-        const bool is_viewer = session->visitor().role < access::Role::Controller;
+        const bool is_viewer = session->user().role < access::Role::Controller;
         SharedBytes& form = is_viewer ? for_viewers : frame;
         if (!form) {
             v1::Event message = event;

@@ -27,8 +27,11 @@ void set_view(Session& session, const v1::Request& request, Streams& streams) {
     }
     if (!found->second.view) {
         return session.answer(protocol::refusing(
-            id, refusal(base::RefusalCode::FailedPrecondition,
-                        "the subscription has no view: its snapshots are not made of tiles", base::Reason::NoView)));
+            id,
+            refusal(
+                base::RefusalCode::FailedPrecondition,
+                "the subscription was created without a view: subscribe with SubscribeSnapshots.view, then change it",
+                base::Reason::NoView)));
     }
     v1::Response response = response_to(id);
     response.mutable_subscription()->set_subscription_id(subscription_id);

@@ -57,9 +57,9 @@ class Transport {
     /// Writes all buffers, after the WebSocket control frames that wait.
     asio::awaitable<Transferred> write(const std::vector<asio::const_buffer>& buffers);
 
-    /// What is wrong with the frames of the client; nullopt: nothing, or this is no WebSocket.
+    /// What is wrong with the frames of the client; nullopt: nothing, or this is not a WebSocket.
     std::optional<WebSocketDecoder::Fault> fault() const;
-    /// Number of frames without content that the client has sent since the last call; 0 if this is no WebSocket.
+    /// Number of frames without content that the client has sent since the last call; 0 if this is not a WebSocket.
     std::uint64_t take_empty_frame_count();
     /// Whether control frames wait for the next write(), which may be one without buffers.
     bool control_waits() const { return websocket_ && (websocket_->ping_due || websocket_->pong); }

@@ -77,11 +77,11 @@ void WebSocketDecoder::begin_frame() {
     const auto second = std::to_integer<std::uint8_t>(header_[1]);
     const auto short_length = static_cast<std::uint8_t>(second & length_bits);
     const auto opcode = static_cast<std::uint8_t>(first & opcode_bits);
-    const bool known = opcode <= binary || (opcode >= close_frame && opcode <= pong);
+    const bool is_known = opcode <= binary || (opcode >= close_frame && opcode <= pong);
     opcode_ = static_cast<Opcode>(opcode);
     final_ = (first & final_bit) != 0;
     const std::size_t header_count = std::exchange(header_count_, 0);
-    if ((first & reserved_bits) != 0 || !known) {
+    if ((first & reserved_bits) != 0 || !is_known) {
         return fail(WebSocketClose::ProtocolError, "a WebSocket frame has an unknown opcode or a reserved bit");
     }
     if ((second & mask_bit) == 0) {

@@ -1,4 +1,4 @@
-// Choice help: one sentence for each choice of a CHOICE parameter. Clients show it beside the choice.
+// Choice help: one sentence for each choice of a CHOICE parameter. Clients show it next to the choice.
 //
 // Owner        none: a constant table.
 // Threads      any.

@@ -8,7 +8,7 @@
 #include "server/base/random.h"
 #include "server/base/result.h"
 #include "server/parameters/json_text.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 
 #include <optional>

@@ -9,7 +9,7 @@
 
 #include "server/base/actor.h"
 #include "server/base/result.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include <cstdint>
 #include <map>

@@ -162,7 +162,7 @@ void NearPairs::follow_reordering(const Circles& circles, base::Executor& execut
 void NearPairs::list(const Circles& circles, const Boxes& boxes, base::Executor& executor) {
     EVOD_ASSERT(circles.size() == circle_count_);
     EVOD_ASSERT(boxes.size() == box_anchor_x_.size());
-    while (!list_circle_pairs(circles, executor)) {
+    while (!try_list_circle_pairs(circles, executor)) {
         skin_px_ /= 2;
         skin_share_ /= 2;
     }
@@ -175,7 +175,7 @@ void NearPairs::list_none(const Circles& circles) {
     box_pairs_.clear();
 }
 
-bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& executor) {
+bool NearPairs::try_list_circle_pairs(const Circles& circles, base::Executor& executor) {
     const std::span<const std::uint32_t> order = strips_.order();
     // More pairs than this mean that circles are crowded. A thinner skin is then faster, down to the distance that
     // bodies move in a tick or two.

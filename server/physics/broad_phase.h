@@ -194,7 +194,8 @@ class NearPairs {
 
   private:
     void anchor(const Circles& circles, base::Executor& executor);
-    bool list_circle_pairs(const Circles& circles, base::Executor& executor);
+    /// Returns false if the circles are too crowded for the present skin.
+    bool try_list_circle_pairs(const Circles& circles, base::Executor& executor);
     void list_box_pairs(const Circles& circles, const Boxes& boxes);
 
     Strips strips_;

@@ -3,7 +3,7 @@
 //
 //   symplectic Euler  x = ½at² + ½·a·t·dt      explicit Euler  x = ½at² − ½·a·t·dt      v = at for both
 //
-// Bounds   beside these formulas, rounding to float and to 1/4096 px changes a speed by at most the fraction
+// Bounds   compared with these formulas, rounding to float and to 1/4096 px changes a speed by at most the fraction
 //          (n + 3)·2⁻²⁴, and a position by at most the fraction (n + 5)·2⁻²⁴ plus n·2⁻²³ m.
 // Threads  none; pure.
 // Source   Hairer, Lubich & Wanner 2006, Geometric Numerical Integration, I.1.

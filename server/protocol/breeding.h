@@ -3,7 +3,7 @@
 
 #include "evod/v1/commands.pb.h"
 #include "server/evolution/breeding_record.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 namespace evod::protocol {
 

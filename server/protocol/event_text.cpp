@@ -194,8 +194,8 @@ Filled text_of_all(const std::vector<Value>& values, std::string_view rule, cons
     }
     std::string text;
     for (const Value& value : values) {
-        const std::string one = text_of(value, rule, event);
-        text += (text.empty() || one.empty() ? "" : ", ") + one;
+        const std::string part = text_of(value, rule, event);
+        text += (text.empty() || part.empty() ? "" : ", ") + part;
     }
     const bool is_number = rule.empty() || rule == "real";
     return {text, is_number ? any_present() : !text.empty()};

@@ -4,7 +4,7 @@
 // Threads      any.
 #pragma once
 
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 
 #include <cstdint>

@@ -154,8 +154,8 @@ v1::AppliedChange to_proto(const simulation::Change& change) {
 std::vector<parameters::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations) {
-    std::vector<parameters::Assignment> made;
-    made.reserve(static_cast<std::size_t>(assignments.size()));
+    std::vector<parameters::Assignment> converted;
+    converted.reserve(static_cast<std::size_t>(assignments.size()));
     bool complete = true;
     for (const v1::ParameterAssignment& assignment : assignments) {
         if (assignment.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
@@ -165,19 +165,19 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
                                   "no value"});
             complete = false;
         } else {
-            made.push_back({assignment.name(), to_value(assignment.value())});
+            converted.push_back({assignment.name(), to_value(assignment.value())});
         }
     }
     if (!complete) {
         // The request will be refused. The other assignments are checked, too, so that the refusal lists all errors
         // that do not depend on the state of the world.
-        for (const parameters::Assignment& assignment : made) {
+        for (const parameters::Assignment& assignment : converted) {
             if (auto fault = parameters::fault_of(assignment, field_prefix)) {
                 violations.push_back(*std::move(fault));
             }
         }
     }
-    return made;
+    return converted;
 }
 
 parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::ScheduledValue>& values,

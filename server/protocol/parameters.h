@@ -4,7 +4,7 @@
 #include "evod/v1/commands.pb.h"
 #include "evod/v1/world.pb.h"
 #include "server/base/result.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 #include "server/simulation/changes.h"
 

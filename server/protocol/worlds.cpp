@@ -253,9 +253,9 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     if (const auto activations = world.activations(island, id)) {
         set_brain(island.brain(), *activations, *to.mutable_brain());
     }
-    const simulation::Fate& fate = island.fate();
-    to.set_food_eaten(fate.food_eaten[id]);
-    to.set_poison_eaten(fate.poison_eaten[id]);
+    const simulation::LifeRecords& life_records = island.life_records();
+    to.set_food_eaten(life_records.food_eaten[id]);
+    to.set_poison_eaten(life_records.poison_eaten[id]);
     if (body) {
         const physics::Circles& bodies = island.bodies();
         to.set_x_px(physics::to_px(bodies.x[*body]));
@@ -269,8 +269,8 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
         to.set_lived_s(static_cast<double>(world.moment().generation_tick - island.placed_tick(id)) *
                        parameters.tick_s);
     } else {
-        to.set_lived_s(static_cast<double>(fate.lived_ticks[id]) * parameters.tick_s);
-        to.set_cause_of_death(static_cast<v1::CauseOfDeath>(fate.cause[id]));
+        to.set_lived_s(static_cast<double>(life_records.lived_ticks[id]) * parameters.tick_s);
+        to.set_cause_of_death(static_cast<v1::CauseOfDeath>(life_records.cause[id]));
     }
     return to;
 }

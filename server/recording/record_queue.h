@@ -46,7 +46,7 @@ struct JobResult {
 class RecordQueue {
   public:
     static constexpr std::chrono::milliseconds gathering_time{200};
-    /// A larger amount is committed at once, so that a command that arrives meanwhile waits for a smaller transaction.
+    /// A larger amount is committed at once, so that a command that arrives then waits for a smaller transaction.
     static constexpr std::size_t gathered_bytes_max = 256 << 10;
 
     /// The state must outlive this object.

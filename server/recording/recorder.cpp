@@ -10,8 +10,8 @@ namespace evod::recording {
 
 RunRecorder::RunRecorder(StorageThread& thread, const run_file::RunBeginning& beginning)
     : thread_{thread}
-    , news_{beginning.identity.first_tick, beginning.identity.first_generation,
-            beginning.ended ? beginning.identity.first_generation : 0} {}
+    , new_records_{beginning.identity.first_tick, beginning.identity.first_generation,
+                   beginning.ended ? beginning.identity.first_generation : 0} {}
 
 void RunRecorder::pass(WaitingRecord record) {
     std::vector<WaitingRecord> records;
@@ -22,9 +22,9 @@ void RunRecorder::pass(WaitingRecord record) {
 void RunRecorder::pass_new_records(const simulation::World& world) {
     // Passes the records together, so that a file contains either all records of a tick or none.
     std::vector<WaitingRecord> records;
-    const std::uint64_t begun = news_.generations_begun();
-    news_.report(world, [&records](auto record) { records.emplace_back(std::move(record)); });
-    if (news_.generations_begun() != begun) {
+    const std::uint64_t begun = new_records_.generations_begun();
+    new_records_.report(world, [&records](auto record) { records.emplace_back(std::move(record)); });
+    if (new_records_.generations_begun() != begun) {
         since_beginning_ = {};
     }
     if (!records.empty()) {
@@ -41,7 +41,7 @@ bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::na
 }
 
 void RunRecorder::make_checkpoint(const simulation::World& world, base::Executor& executor) {
-    news_.seen(world.moment().tick);
+    new_records_.seen(world.moment().tick);
     WaitingRecord checkpoint{run_file::checkpoint_of(world, journal_entries_, executor)};
     checkpoint.writing = writing_;
     pass(std::move(checkpoint));
@@ -49,7 +49,7 @@ void RunRecorder::make_checkpoint(const simulation::World& world, base::Executor
 }
 
 WaitingRecord RunRecorder::record_of(CommandRecord command) {
-    news_.seen(command.tick);
+    new_records_.seen(command.tick);
     return WaitingRecord{run_file::JournalEntry{.number = ++journal_entries_,
                                                 .tick = command.tick,
                                                 .origin = std::move(command.origin),
@@ -67,8 +67,8 @@ Closing RunRecorder::ending(std::uint64_t tick, bool ended, std::string renamed,
     if (command) {
         closing.last.push_back(record_of(*std::move(command)));
     }
-    news_.seen(tick);
-    closing.last.emplace_back(run_file::EndMark{.ended = ended, .tick = news_.tick()});
+    new_records_.seen(tick);
+    closing.last.emplace_back(run_file::EndMark{.ended = ended, .tick = new_records_.tick()});
     return closing;
 }
 

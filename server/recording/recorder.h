@@ -73,13 +73,13 @@ class RunRecorder {
                 std::uint64_t generations_ended)
         : thread_{thread}
         , number_{number}
-        , news_{so_far.tick, so_far.generations, generations_ended}
+        , new_records_{so_far.tick, so_far.generations, generations_ended}
         , journal_entries_{so_far.journal_entries} {}
 
     /// Passes new records to the storage thread. To be called before the first tick and after every tick.
     void follow(const simulation::World& world) {
         const simulation::Moment& moment = world.moment();
-        if (moment.generation != news_.generations_begun() || moment.tick % run_file::ticks_per_hash == 0 ||
+        if (moment.generation != new_records_.generations_begun() || moment.tick % run_file::ticks_per_hash == 0 ||
             world.generation_over()) {
             pass_new_records(world);
         }
@@ -108,7 +108,7 @@ class RunRecorder {
 
     StorageThread& thread_;
     RunNumber number_ = 0;
-    NewRecordFinder news_; // up to the records that have been passed to the storage thread
+    NewRecordFinder new_records_; // up to the records that have been passed to the storage thread
     std::uint64_t journal_entries_ = 0;
 
     // Time spent on simulation since the last stored beginning of a generation or checkpoint.

@@ -29,7 +29,7 @@ class StorageWorker {
 
   private:
     /// Takes the new records and results. Waits for work first, unless `more` is set. After a failed write, waits until
-    /// the next attempt is due, and refuses barriers meanwhile.
+    /// the next attempt is due, and refuses barriers.
     ///
     /// returns  whether the server stops.
     bool take(bool more);

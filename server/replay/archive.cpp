@@ -35,7 +35,7 @@ Result<bool> is_over(run_file::RunFile& file) {
 }
 
 /// Completes or undoes the creation or reset of a world that was interrupted by a crash. If the old run has its end
-/// mark, the new run beside it is complete and replaces it. Otherwise the new run is deleted.
+/// mark, the new run next to it is complete and replaces it. Otherwise the new run is deleted.
 Result<void> finish_replacing(const run_file::DataFolder& folder, const std::string& path) {
     const std::string next = run_file::DataFolder::next_file_of(path);
     std::error_code error;
@@ -99,14 +99,14 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const ru
         if (archive->is_damaged(run_file::world_of(file))) {
             continue;
         }
-        const auto brought = base::within_memory([&] { return archive->recover_world(file, options, executor); });
-        if (!brought && brought.error().code == RefusalCode::ResourceExhausted) {
+        const auto recovered = base::within_memory([&] { return archive->recover_world(file, options, executor); });
+        if (!recovered && recovered.error().code == RefusalCode::ResourceExhausted) {
             archive->add_damaged(
                 file, refusal(RefusalCode::Unavailable, file + ": there is not enough memory to restore its world"));
-        } else if (!brought) {
-            archive->add_damaged(file, brought.error());
-        } else if (!brought->empty()) {
-            ended.push_back(*brought);
+        } else if (!recovered) {
+            archive->add_damaged(file, recovered.error());
+        } else if (!recovered->empty()) {
+            ended.push_back(*recovered);
         }
     }
     for (const std::string& file : files->of_worlds) {

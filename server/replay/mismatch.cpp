@@ -133,24 +133,24 @@ Found compare_account(const std::string& name, const std::string& of_island,
     evolution::for_each_number(simulated, names,
                                [&](const std::string&, std::optional<double> value) { again.push_back(value); });
     const auto written = [](std::optional<double> value) { return value ? text_of(*value) : "none"; };
-    Found found;
+    Found mismatch;
     std::size_t place = 0;
     evolution::for_each_number(stored, names, [&](const std::string& number, std::optional<double> value) {
-        if (!found && !agree(value, again[place])) {
-            found = Mismatch{name + number + of_island, written(value), written(again[place])};
+        if (!mismatch && !agree(value, again[place])) {
+            mismatch = Mismatch{name + number + of_island, written(value), written(again[place])};
         }
         ++place;
     });
-    return found;
+    return mismatch;
 }
 
 Found compare_island(const std::string& of_island, const NextGeneration& stored, const NextGeneration& simulated) {
     const auto genes_of = [](const NextGeneration& born) {
         return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
     };
-    if (auto found = compare_part("the number of genes" + of_island, static_cast<std::uint64_t>(stored.genes.rows()),
-                                  static_cast<std::uint64_t>(simulated.genes.rows()))) {
-        return found;
+    if (auto mismatch = compare_part("the number of genes" + of_island, static_cast<std::uint64_t>(stored.genes.rows()),
+                                     static_cast<std::uint64_t>(simulated.genes.rows()))) {
+        return mismatch;
     }
     const auto stored_genes = genes_of(stored), simulated_genes = genes_of(simulated);
     if (stored_genes.size() != simulated_genes.size()) {
@@ -164,21 +164,21 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
                                 std::to_string(place / gene_count) + of_island,
                             double{*one}, double{*other});
     }
-    if (auto found =
+    if (auto mismatch =
             compare_organisms<evolution::Parents>("the parents", of_island, stored.parents, simulated.parents)) {
-        return found;
+        return mismatch;
     }
-    if (auto found =
+    if (auto mismatch =
             compare_part("the number of elite organisms" + of_island, stored.elite_count, simulated.elite_count)) {
-        return found;
+        return mismatch;
     }
-    if (auto found =
+    if (auto mismatch =
             compare_part("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count)) {
-        return found;
+        return mismatch;
     }
-    if (auto found = compare_part("the number of genes clamped to their bounds" + of_island, stored.clamped_count,
-                                  simulated.clamped_count)) {
-        return found;
+    if (auto mismatch = compare_part("the number of genes clamped to their bounds" + of_island, stored.clamped_count,
+                                     simulated.clamped_count)) {
+        return mismatch;
     }
     return compare_account("the selection account: ", of_island, stored.account, simulated.account);
 }
@@ -195,21 +195,21 @@ Found compare_island(const std::string& of_island, const std::vector<double>& st
 
 Found compare_island(const std::string& of_island, const run_file::IslandOutcome& stored,
                      const run_file::IslandOutcome& simulated) {
-    if (auto found = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness)) {
-        return found;
+    if (auto mismatch = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness)) {
+        return mismatch;
     }
-    if (auto found =
+    if (auto mismatch =
             compare_organisms<std::uint32_t>("the ticks lived", of_island, stored.lived_ticks, simulated.lived_ticks)) {
-        return found;
+        return mismatch;
     }
     return compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, stored.cause, simulated.cause);
 }
 
 Found compare_island(const std::string& of_island, const simulation::GenerationStatistics& stored,
                      const simulation::GenerationStatistics& simulated) {
-    if (auto found = compare_part("the statistics: the number of genes" + of_island, stored.genes.size(),
-                                  simulated.genes.size())) {
-        return found;
+    if (auto mismatch = compare_part("the statistics: the number of genes" + of_island, stored.genes.size(),
+                                     simulated.genes.size())) {
+        return mismatch;
     }
     const std::vector<std::string> names = names_of(stored.genes.size());
     const auto for_each_number = [&](const auto& statistics, const auto& visit) {
@@ -218,52 +218,54 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
     };
     std::vector<std::string> again;
     for_each_number(simulated, [&](const std::string&, const auto& value) { again.push_back(text_of(value)); });
-    Found found;
+    Found mismatch;
     auto simulated_text = again.begin();
     for_each_number(stored, [&](const std::string& name, const auto& value) {
         const std::string text = text_of(value); // the text contains all digits
-        if (!found && text != *simulated_text) {
-            found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
+        if (!mismatch && text != *simulated_text) {
+            mismatch = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
         }
         ++simulated_text;
     });
-    return found ? found : compare_account("the statistics: ", of_island, stored.account, simulated.account);
+    return mismatch ? mismatch : compare_account("the statistics: ", of_island, stored.account, simulated.account);
 }
 
 Found compare_island(const std::string& of_island, const IslandState& stored, const IslandState& simulated) {
     using simulation::Items;
-    const simulation::Fate &one = stored.fate, &other = simulated.fate;
-    if (auto found =
-            compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, one.cause, other.cause)) {
-        return found;
+    const simulation::LifeRecords &records = stored.life_records, &new_records = simulated.life_records;
+    if (auto mismatch = compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, records.cause,
+                                                                    new_records.cause)) {
+        return mismatch;
     }
-    if (auto found =
-            compare_organisms<std::uint32_t>("the ticks lived", of_island, one.lived_ticks, other.lived_ticks)) {
-        return found;
+    if (auto mismatch = compare_organisms<std::uint32_t>("the ticks lived", of_island, records.lived_ticks,
+                                                         new_records.lived_ticks)) {
+        return mismatch;
     }
-    if (auto found = compare_organisms<std::uint32_t>("the food eaten", of_island, one.food_eaten, other.food_eaten)) {
-        return found;
+    if (auto mismatch =
+            compare_organisms<std::uint32_t>("the food eaten", of_island, records.food_eaten, new_records.food_eaten)) {
+        return mismatch;
     }
-    if (auto found =
-            compare_organisms<std::uint32_t>("the poison eaten", of_island, one.poison_eaten, other.poison_eaten)) {
-        return found;
+    if (auto mismatch = compare_organisms<std::uint32_t>("the poison eaten", of_island, records.poison_eaten,
+                                                         new_records.poison_eaten)) {
+        return mismatch;
     }
-    if (auto found = compare_organisms<IslandState::Organism>("the position, velocity and health", of_island,
-                                                              stored.organisms, simulated.organisms)) {
-        return found;
+    if (auto mismatch = compare_organisms<IslandState::Organism>("the position, velocity and health", of_island,
+                                                                 stored.organisms, simulated.organisms)) {
+        return mismatch;
     }
-    if (auto found = compare_organisms<float>("the heading", of_island, stored.headings, simulated.headings)) {
-        return found;
+    if (auto mismatch = compare_organisms<float>("the heading", of_island, stored.headings, simulated.headings)) {
+        return mismatch;
     }
-    if (auto found = compare_each<IslandState::Crate>("the position and velocity of crate", of_island, stored.crates,
-                                                      simulated.crates)) {
-        return found;
+    if (auto mismatch = compare_each<IslandState::Crate>("the position and velocity of crate", of_island, stored.crates,
+                                                         simulated.crates)) {
+        return mismatch;
     }
-    if (auto found = compare_each<Items::Item>("the position of food", of_island, stored.food, simulated.food)) {
-        return found;
+    if (auto mismatch = compare_each<Items::Item>("the position of food", of_island, stored.food, simulated.food)) {
+        return mismatch;
     }
-    if (auto found = compare_each<Items::Item>("the position of poison", of_island, stored.poison, simulated.poison)) {
-        return found;
+    if (auto mismatch =
+            compare_each<Items::Item>("the position of poison", of_island, stored.poison, simulated.poison)) {
+        return mismatch;
     }
     if (stored.placed != simulated.placed || stored.placed_food != simulated.placed_food ||
         stored.placed_poison != simulated.placed_poison) {
@@ -281,12 +283,12 @@ Found compare_island(const std::string& of_island, const IslandState& stored, co
 
 template <class T>
 Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simulated) {
-    if (auto found = compare_part("the number of islands", stored.size(), simulated.size())) {
-        return found;
+    if (auto mismatch = compare_part("the number of islands", stored.size(), simulated.size())) {
+        return mismatch;
     }
     for (std::size_t island = 0; island < stored.size(); ++island) {
-        if (auto found = compare_island(" on island " + std::to_string(island), stored[island], simulated[island])) {
-            return found;
+        if (auto mismatch = compare_island(" on island " + std::to_string(island), stored[island], simulated[island])) {
+            return mismatch;
         }
     }
     return std::nullopt;
@@ -295,41 +297,45 @@ Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simula
 } // namespace
 
 Found compare(const simulation::Opening& stored, const simulation::Opening& simulated) {
-    if (auto found = compare_part("the first tick", stored.moment.tick, simulated.moment.tick)) {
-        return found;
+    if (auto mismatch = compare_part("the first tick", stored.moment.tick, simulated.moment.tick)) {
+        return mismatch;
     }
-    if (auto found = compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
-        return found;
+    if (auto mismatch =
+            compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
+        return mismatch;
     }
-    if (auto found = compare_part("in effect", stored.parameters.active, simulated.parameters.active)) {
-        return found;
+    if (auto mismatch = compare_part("in effect", stored.parameters.active, simulated.parameters.active)) {
+        return mismatch;
     }
-    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
-        return found;
+    if (auto mismatch = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
+        return mismatch;
     }
     // After a reset, a run continues the revision numbers of the previous run.
     if (stored.moment.generation > 1) {
-        if (auto found = compare_part("the revision of the parameters", stored.parameters.revision,
-                                      simulated.parameters.revision)) {
-            return found;
+        if (auto mismatch = compare_part("the revision of the parameters", stored.parameters.revision,
+                                         simulated.parameters.revision)) {
+            return mismatch;
         }
     }
-    const evolution::Progress &one = stored.progress, &other = simulated.progress;
-    if (auto found = compare_part("the progress: completed generations", one.generations, other.generations)) {
-        return found;
+    const evolution::Progress &progress = stored.progress, &new_progress = simulated.progress;
+    if (auto mismatch =
+            compare_part("the progress: completed generations", progress.generations, new_progress.generations)) {
+        return mismatch;
     }
-    if (auto found = compare_part("the progress: generations without improvement", one.stagnant, other.stagnant)) {
-        return found;
+    if (auto mismatch =
+            compare_part("the progress: generations without improvement", progress.stagnant, new_progress.stagnant)) {
+        return mismatch;
     }
-    if (auto found = compare_part("the progress: the best fitness so far", one.best_fitness, other.best_fitness)) {
-        return found;
+    if (auto mismatch =
+            compare_part("the progress: the best fitness so far", progress.best_fitness, new_progress.best_fitness)) {
+        return mismatch;
     }
-    if (auto found = compare_part("the progress: the best fitness of the previous generation", one.last_best_fitness,
-                                  other.last_best_fitness)) {
-        return found;
+    if (auto mismatch = compare_part("the progress: the best fitness of the previous generation",
+                                     progress.last_best_fitness, new_progress.last_best_fitness)) {
+        return mismatch;
     }
-    return compare_part("the progress: whether the previous generation died out", one.last_died_out,
-                        other.last_died_out);
+    return compare_part("the progress: whether the previous generation died out", progress.last_died_out,
+                        new_progress.last_died_out);
 }
 
 Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated) {
@@ -351,31 +357,32 @@ Found compare(const std::vector<simulation::GenerationStatistics>& stored,
 }
 
 Found compare(const simulation::WorldState& stored, const simulation::WorldState& simulated) {
-    if (auto found = compare_part("the generation", stored.moment.generation, simulated.moment.generation)) {
-        return found;
+    if (auto mismatch = compare_part("the generation", stored.moment.generation, simulated.moment.generation)) {
+        return mismatch;
     }
-    if (auto found = compare_part("the tick of the generation", stored.moment.generation_tick,
-                                  simulated.moment.generation_tick)) {
-        return found;
+    if (auto mismatch = compare_part("the tick of the generation", stored.moment.generation_tick,
+                                     simulated.moment.generation_tick)) {
+        return mismatch;
     }
-    if (auto found = compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
-        return found;
+    if (auto mismatch =
+            compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
+        return mismatch;
     }
-    if (auto found = compare_part("in effect", stored.parameters.active, simulated.parameters.active)) {
-        return found;
+    if (auto mismatch = compare_part("in effect", stored.parameters.active, simulated.parameters.active)) {
+        return mismatch;
     }
-    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
-        return found;
+    if (auto mismatch = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
+        return mismatch;
     }
-    if (auto found =
+    if (auto mismatch =
             compare_part("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision)) {
-        return found;
+        return mismatch;
     }
-    if (auto found = compare_islands(stored.islands, simulated.islands)) {
-        return found;
+    if (auto mismatch = compare_islands(stored.islands, simulated.islands)) {
+        return mismatch;
     }
-    if (auto found = compare_islands(stored.ended, simulated.ended)) {
-        return found;
+    if (auto mismatch = compare_islands(stored.ended, simulated.ended)) {
+        return mismatch;
     }
     return compare_islands(stored.given_fitness, simulated.given_fitness);
 }

@@ -112,7 +112,7 @@ Result<std::string> StoredRun::world_name() const {
     return (*file)->identity().name;
 }
 
-Result<SeekStart> StoredRun::start_seek(const std::optional<WantedMoment>& wanted, RecordedUntil known,
+Result<SeekStart> StoredRun::start_seek(const std::optional<WantedMoment>& wanted, RecordedUntil recorded,
                                         base::Executor& executor, const base::StopCheck& stop) const {
     const auto file = open();
     if (!file) {
@@ -122,8 +122,8 @@ Result<SeekStart> StoredRun::start_seek(const std::optional<WantedMoment>& wante
         return held.error();
     }
     simulation::Replay there = replay_of_file(**file);
-    there.last_generation = std::max(there.last_generation, known.generation);
-    there.last_tick = std::max(there.last_tick, known.tick);
+    there.last_generation = std::max(there.last_generation, recorded.generation);
+    there.last_tick = std::max(there.last_tick, recorded.tick);
     const auto to =
         find(**file, wanted.value_or(WantedMoment{.generation = there.first_generation, .tick = {}}), there);
     if (!to) {
@@ -144,17 +144,17 @@ Result<NewRecords> StoredRun::new_records(std::uint64_t after_entry, const base:
     if (auto held = (*file)->pin_snapshot(); !held) {
         return held.error();
     }
-    NewRecords news{.there = replay_of_file(**file),
-                    .path = (*file)->path(),
-                    .after_entry = after_entry,
-                    .last_entry = std::max(after_entry, (*file)->journal().last_number()),
-                    .changes = {}};
+    NewRecords records{.there = replay_of_file(**file),
+                       .path = (*file)->path(),
+                       .after_entry = after_entry,
+                       .last_entry = std::max(after_entry, (*file)->journal().last_number()),
+                       .changes = {}};
     auto changes = world_changes(**file, after_entry, stop);
     if (!changes) {
         return changes.error();
     }
-    news.changes = *std::move(changes);
-    return news;
+    records.changes = *std::move(changes);
+    return records;
 }
 
 } // namespace evod::replay

@@ -50,8 +50,8 @@ struct VerifyProgress {
     std::uint64_t ticks = 0, ticks_in_all = 0;             // simulated so far, in any order; 0 during reading
 };
 
-/// Refused if the file is damaged or follows another model. If a server writes to the file meanwhile, verify() uses the
-/// snapshot at its start.
+/// Refused if the file is damaged or follows another model. If a server writes to the file at the same time, verify()
+/// uses the snapshot at its start.
 ///
 /// progress  called from time to time by the threads of the executor, several at once.
 base::Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,

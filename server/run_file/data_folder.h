@@ -50,11 +50,11 @@ class DataFolder {
 /// The name of the world whose run is stored in this file.
 std::string world_of(const std::string& path);
 
-/// Renames a run file and the SQLite files beside it. This thread must not have the file open. Programs that are
+/// Renames a run file and the SQLite files next to it. This thread must not have the file open. Programs that are
 /// reading the file can continue. No file keeps the old name.
 base::Result<void> rename_run_file(const std::string& from, const std::string& to);
 
-/// Deletes a run file and the SQLite files beside it. No thread may have the file open.
+/// Deletes a run file and the SQLite files next to it. No thread may have the file open.
 base::Result<void> remove_run_file(const std::string& path);
 
 /// Refuses a folder, a device, a symbolic link, and a file with a hard link. Two servers might write to a file that has

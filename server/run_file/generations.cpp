@@ -156,14 +156,14 @@ Result<simulation::Founders> Generations::founders_of(const GenerationBegun& beg
         return database_.damaged("a row of the founders of generation " + std::to_string(generation));
     };
     TableReader<FoundersTable> rows{database_.database, of_generation, value_of(generation)};
-    bool known = true;
+    bool have_founders = true;
     FoundersTable::Row row{};
     while (rows.next(row)) {
         if (!rows.sound() || row.island != islands.size() || row.island >= begun.born.size()) {
             return bad();
         }
-        known &= row.founders.size() == static_cast<std::size_t>(begun.born[row.island].genes.cols());
-        if (!known && !row.founders.empty()) {
+        have_founders &= row.founders.size() == static_cast<std::size_t>(begun.born[row.island].genes.cols());
+        if (!have_founders && !row.founders.empty()) {
             return bad();
         }
         islands.push_back(std::move(row.founders));
@@ -174,7 +174,7 @@ Result<simulation::Founders> Generations::founders_of(const GenerationBegun& beg
     if (islands.size() != begun.born.size()) {
         return bad();
     }
-    return known ? std::move(islands) : simulation::Founders{};
+    return have_founders ? std::move(islands) : simulation::Founders{};
 }
 
 Result<Generations::Accounts> Generations::accounts_of(std::uint64_t generation, std::size_t island_count) {

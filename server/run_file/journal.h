@@ -17,8 +17,8 @@ class Journal {
   public:
     explicit Journal(RunDatabase& database) : database_{database} {}
 
-    /// Reads at most `count` entries, beginning with entry number `first`, and none after those that have more than
-    /// `bytes_max` bytes together. DATA_LOSS names a damaged or missing entry.
+    /// Reads entries from number `first` on. Stops after `count` entries, or after the entry with which their sum
+    /// exceeds `bytes_max` bytes. DATA_LOSS names a damaged or missing entry.
     /// If `first` is 1, SQLite checks the whole table beforehand, because no other row shows that the last entries are
     /// missing.
     base::Result<std::vector<JournalEntry>> read(std::uint64_t first = 1, std::uint32_t count = ~0u,

@@ -6,7 +6,7 @@
 #include "server/evolution/next_generation.h"
 #include "server/run_file/build.h"
 #include "server/simulation/laboratory.h"
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 #include "server/simulation/model_version.h"
 
 #include <cstdint>

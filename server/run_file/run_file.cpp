@@ -24,7 +24,7 @@ Refusal exists_already(const std::string& path) {
     return refusal(RefusalCode::AlreadyExists, path + " exists already");
 }
 
-/// SQLite treats a file of one byte or less as an empty database, and deletes the log beside it.
+/// SQLite treats a file of one byte or less as an empty database, and deletes the log next to it.
 Result<void> expect_bytes(const std::string& path) {
     std::error_code error;
     if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes <= 1) {
@@ -151,7 +151,7 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
     }
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
     auto read = file->read_beginning();
-    // A reader uses the log beside the file, so SQLite must be able to write to the folder. If it cannot, a file with
+    // A reader uses the log next to the file, so SQLite must be able to write to the folder. If it cannot, a file with
     // an empty log can be read without the log.
     const auto log_bytes = std::filesystem::file_size(path + "-wal", error);
     if (!read && read.error().code == RefusalCode::Unavailable && (error || log_bytes == 0)) {

@@ -1,6 +1,6 @@
 // Run file lock: keeps two programs from writing to a run file outside a data folder.
 //
-// The lock is a file beside the run file, `NAME.evod-lock`, which is deleted when the lock is released. If the folder
+// The lock is a file next to the run file, `NAME.evod-lock`, which is deleted when the lock is released. If the folder
 // is the data folder of a server, the lock also keeps servers from using it.
 //
 // Owner        the program that writes to the run file.

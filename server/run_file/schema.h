@@ -1,7 +1,7 @@
 // Schema: creates the tables of a run file, and checks that a file has these tables and nothing else.
 #pragma once
 
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/run_file/run_database.h"
 
 namespace evod::run_file {

@@ -7,7 +7,7 @@
 //
 //   - A later frame continues the checksum of a commit at or after the bad frame. SQLite writes such a frame only after
 //     that commit, and everything before it, has been synced.
-//   - The index beside the log, NAME.evod-shm, counts the bad frame. SQLite updates the index after a commit was
+//   - The index next to the log, NAME.evod-shm, counts the bad frame. SQLite updates the index after a commit was
 //     synced.
 //
 // After the last valid frame there may be frames of earlier cycles of the log, which have other salts, and frames of a
@@ -39,7 +39,7 @@ std::optional<std::uint64_t> damage_of_log(ReadAt log, ReadAt index);
 
 enum class LogIndex { Read, Unread };
 
-/// Returns DataLoss if the log beside a run file is damaged; the message says how to accept the loss. Succeeds if there
+/// Returns DataLoss if the log of a run file is damaged; the message says how to accept the loss. Succeeds if there
 /// is no log, and while a server writes to it.
 ///
 /// index  LogIndex::Read is allowed only if nothing in this process has the run file open. Closing the index would

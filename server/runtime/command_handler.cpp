@@ -5,6 +5,7 @@
 #include "server/base/within_memory.h"
 #include "server/protocol/answers.h"
 #include "server/protocol/events.h"
+#include "server/runtime/fork.h"
 #include "server/simulation/world_name.h"
 
 #include <algorithm>
@@ -75,19 +76,20 @@ bool CommandHandler::waits_for_a_world(const simulation::Command& command) const
         [this](const auto& c) {
             bool waits = false;
             if constexpr (requires { c.world; }) {
-                waits |= builds_.holds(c.world) || is_coming(c.world);
+                waits |= builds_.holds(c.world) || is_announced_fork(c.world);
             }
             if constexpr (requires { c.name; }) {
-                waits |= builds_.holds(c.name) || is_coming(c.name);
+                waits |= builds_.holds(c.name) || is_announced_fork(c.name);
             }
             return waits;
         },
         command);
 }
 
-bool CommandHandler::is_coming(std::string_view world) const {
-    return std::ranges::any_of(
-        coming_, [&](const ForkComing& fork) { return world.empty() ? fork.comes_at_once : world == fork.name; });
+bool CommandHandler::is_announced_fork(std::string_view world) const {
+    return std::ranges::any_of(announced_forks_, [&](const ForkAnnounced& fork) {
+        return world.empty() ? fork.comes_at_once : world == fork.name;
+    });
 }
 
 void CommandHandler::handle_kept() {
@@ -159,30 +161,26 @@ void CommandHandler::construct(CommandMail& mail, const std::optional<RunBefore>
     if (mail.session == 0) {
         order.at_once = true; // the first world of a server: every client must find it
     }
-    bool at_its_opening = false;
     if constexpr (std::is_same_v<C, simulation::ResetWorld>) {
         order.name = command.world;
     } else {
         order.name = command.name;
     }
     if constexpr (is_fork) {
-        at_its_opening = command.at_generation.has_value();
         if (order.construction.reads_world) {
             order.original = command.world;
         }
     }
-    order.finish = [name = order.name, run_id = command.run_id, is_recorded = recorder_ != nullptr, before,
-                    at_its_opening](simulation::World world, base::Executor& workers) {
-        if (at_its_opening) {
-            world = world.at_its_opening(workers);
-        }
+    order.finish = [name = order.name, command, is_recorded = recorder_ != nullptr, before](simulation::World world,
+                                                                                            base::Executor& workers) {
         if constexpr (is_fork) {
-            world.become_fork();
+            world = world_of_fork(command, std::move(world), workers);
         }
         BuiltWorld built{std::move(world), {}};
         if (is_recorded) {
-            built.beginning = is_fork ? run_file::beginning_of_fork(built.world, name, run_id, before->run_id, workers)
-                                      : run_file::beginning_of_run(built.world, name, run_id);
+            built.beginning =
+                is_fork ? run_file::beginning_of_fork(built.world, name, command.run_id, before->run_id, workers)
+                        : run_file::beginning_of_run(built.world, name, command.run_id);
         }
         return built;
     };
@@ -201,38 +199,38 @@ void CommandHandler::fork(CommandMail& mail) {
     const auto& command = std::get<simulation::ForkWorld>(mail.command);
     const simulation::Entry* original = entry_of_command(mail.command);
     const auto before = run_before(mail.command);
-    if (original && command.at_generation && *command.at_generation != original->world.moment().generation) {
+    if (original && begins_in_another_generation(command, original->world)) {
         if (const auto run = runs_.run_of(*original); !run) {
             return answer(mail, run.error(), before);
         }
-        coming_.push_back({command.name, false});
+        announced_forks_.push_back({command.name, false});
         const std::string world = original->name;
         return runs_.find({.world = world, .purpose = std::move(mail)});
     }
     construct<simulation::ForkWorld>(mail, before, laboratory_.construction(command));
 }
 
-void CommandHandler::take(WorldBrought& brought) {
-    const std::string& name = std::get<simulation::ForkWorld>(brought.fork.command).name;
-    const auto coming = std::ranges::find(coming_, name, &ForkComing::name);
-    EVOD_ASSERT(coming != coming_.end());
-    coming_.erase(coming);
-    adopt(brought);
+void CommandHandler::take(ForkWorldComputed& computed) {
+    const std::string& name = std::get<simulation::ForkWorld>(computed.fork.command).name;
+    const auto announced = std::ranges::find(announced_forks_, name, &ForkAnnounced::name);
+    EVOD_ASSERT(announced != announced_forks_.end());
+    announced_forks_.erase(announced);
+    adopt(computed);
     handle_kept();
 }
 
-void CommandHandler::adopt(WorldBrought& brought) {
-    const RunBefore before{brought.run_id, 0};
-    if (!*brought.world) {
-        return answer(brought.fork, brought.world->error(), before);
+void CommandHandler::adopt(ForkWorldComputed& computed) {
+    const RunBefore before{computed.run_id, 0};
+    if (!*computed.world) {
+        return answer(computed.fork, computed.world->error(), before);
     }
-    if (auto refused = refusal_of(brought.fork.command)) {
-        return answer(brought.fork, *refused, before);
+    if (auto refused = refusal_of(computed.fork.command)) {
+        return answer(computed.fork, *refused, before);
     }
     construct<simulation::ForkWorld>(
-        brought.fork, before,
-        simulation::Construction{.construct = [there = brought.world](base::Executor&) { return std::move(**there); },
-                                 .genes = simulation::genes_of((*brought.world)->parameters().active)});
+        computed.fork, before,
+        simulation::Construction{.construct = [there = computed.world](base::Executor&) { return std::move(**there); },
+                                 .genes = simulation::genes_of((*computed.world)->parameters().active)});
 }
 
 void CommandHandler::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,

@@ -2,7 +2,7 @@
 //
 // Owner        a simulation loop, on its thread.
 // Builds       another thread constructs large worlds (world_builds.h). Meanwhile the commands to them are kept.
-// Forks        the world of a fork of a replay, or at an earlier generation, comes from the loop of the replays.
+// Forks        fork.h describes them. Worlds that the loop of the replays computes for them come as mail.
 #pragma once
 
 #include "server/recording/recorder.h"
@@ -37,21 +37,21 @@ class CommandHandler {
     /// Handles the mail of the build thread.
     void take(const WorldBuilt& built);
     // Handle the mail about the worlds that come from the loop of the replays.
-    void take(ForkComing& coming) { coming_.push_back(std::move(coming)); }
-    void take(WorldBrought& brought);
+    void take(ForkAnnounced& announced) { announced_forks_.push_back(std::move(announced)); }
+    void take(ForkWorldComputed& computed);
     /// Returns the worlds that commands have changed since the last call.
     std::vector<std::string> take_changed() { return std::exchange(changed_, {}); }
 
   private:
     base::Result<simulation::Applied> apply(const simulation::Command& command);
-    /// Whether the command must wait because one of its worlds is being built or is coming.
+    /// Whether the command must wait because one of its worlds is being built or is an announced fork.
     bool waits_for_a_world(const simulation::Command& command) const;
-    /// Whether the world is a fork that is coming. With an empty name: whether one comes soon, because the meaning of
-    /// an empty name may then change.
-    bool is_coming(std::string_view world) const;
+    /// Whether the world is an announced fork. With an empty name: whether a fork comes soon, because the meaning of an
+    /// empty name may then change.
+    bool is_announced_fork(std::string_view world) const;
     /// Handles the commands that waited.
     void handle_kept();
-    void adopt(WorldBrought& brought);
+    void adopt(ForkWorldComputed& computed);
     /// The run of the command's world before the command was applied.
     struct RunBefore {
         simulation::RunId run_id;
@@ -82,8 +82,8 @@ class CommandHandler {
     WorldBuilds& builds_;
     StorageWatch& storage_;
     RunFinder& runs_;
-    std::vector<ForkComing> coming_; // forks whose worlds are on their way
-    std::vector<CommandMail> kept_;  // commands to worlds that builds hold or that are coming, in order of arrival
+    std::vector<ForkAnnounced> announced_forks_; // forks whose worlds are on their way
+    std::vector<CommandMail> kept_; // commands to worlds that builds hold or that are announced, in order of arrival
     std::vector<std::string> changed_;
 };
 

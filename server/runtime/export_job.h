@@ -3,7 +3,7 @@
 // Threads   a job queue runs it. The parts go through the outbox to the network thread. It reads the run file while the
 //           server may write to it. Generations that the file does not retain are simulated on the thread of the job,
 //           so no world waits for the export.
-// Full      the job waits until a finished part is requested, and lets other jobs compute meanwhile (job_turns.h). It
+// Full      the job waits until a finished part is requested, and lets other jobs compute (job_turns.h). It
 //           holds a database snapshot of the run file, so it ends after waiting for `patience`.
 #pragma once
 

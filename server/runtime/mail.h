@@ -84,18 +84,18 @@ struct FindRun {
 };
 
 /// A request to the thread of the replays: the world of a live run at an earlier generation, to fork it.
-struct BringWorld {
+struct ComputeForkWorld {
     CommandMail fork;
     FoundRun run; // where to find the generation
 };
 /// The thread of the replays has the command that forks one of them. Until the world comes, the commands that name the
 /// fork must wait.
-struct ForkComing {
+struct ForkAnnounced {
     std::string name;          // of the fork
     bool comes_at_once = true; // no seek is needed
 };
 /// The world of a fork, for the thread of the live worlds.
-struct WorldBrought {
+struct ForkWorldComputed {
     CommandMail fork;
     simulation::RunId run_id;                               // of the original
     std::shared_ptr<base::Result<simulation::World>> world; // moved out by the reader
@@ -138,7 +138,7 @@ struct RecordsRead {
     std::shared_ptr<const base::Result<replay::NewRecords>> records;
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, BringWorld, ForkComing, WorldBrought, EndReplay,
-                          SessionEnded, Ping, WorldBuilt, SeekRead, RecordsRead>;
+using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, ComputeForkWorld, ForkAnnounced,
+                          ForkWorldComputed, EndReplay, SessionEnded, Ping, WorldBuilt, SeekRead, RecordsRead>;
 
 } // namespace evod::runtime

@@ -202,9 +202,9 @@ class MpiExchange final : public Processes {
 
     /// Answers rank 0, if it asks whether this rank waits, too.
     void answer_question() {
-        int asked = 0;
-        MPI_Iprobe(0, ask_tag, questions_, &asked, MPI_STATUS_IGNORE);
-        if (rank_ != 0 && asked != 0) {
+        int is_asked = 0;
+        MPI_Iprobe(0, ask_tag, questions_, &is_asked, MPI_STATUS_IGNORE);
+        if (rank_ != 0 && is_asked != 0) {
             MPI_Recv(nullptr, 0, MPI_CHAR, 0, ask_tag, questions_, MPI_STATUS_IGNORE);
             MPI_Request request = MPI_REQUEST_NULL;
             MPI_Isend(nullptr, 0, MPI_CHAR, 0, answer_tag, questions_, &request);

@@ -23,8 +23,8 @@ void Pace::follow_worlds() {
     for (const auto& entry : laboratory_.entries()) {
         follow(*entry);
     }
-    if (tracks_.size() > laboratory_.entries().size()) {
-        std::erase_if(tracks_, [this](const auto& item) {
+    if (world_data_.size() > laboratory_.entries().size()) {
+        std::erase_if(world_data_, [this](const auto& item) {
             return std::ranges::none_of(laboratory_.entries(),
                                         [&](const auto& entry) { return entry->name == item.first; });
         });
@@ -32,39 +32,39 @@ void Pace::follow_worlds() {
 }
 
 void Pace::follow(simulation::Entry& entry) {
-    auto found = tracks_.find(entry.name);
-    if (found == tracks_.end()) {
-        found = tracks_.emplace(entry.name, Track{}).first;
+    auto found = world_data_.find(entry.name);
+    if (found == world_data_.end()) {
+        found = world_data_.emplace(entry.name, WorldData{}).first;
         found->second.user = rules_.user_of(entry);
-        if (const auto watch = demand_.find(entry.name); watch != demand_.end()) {
-            found->second.snapshots.set_demand(&watch->second);
+        if (const auto wanted = demand_.find(entry.name); wanted != demand_.end()) {
+            found->second.snapshots.set_demand(&wanted->second);
         }
         if (outputs_.counted != nullptr && !simulation::is_replay_name(entry.name)) {
             found->second.counted = outputs_.counted->add(entry.name);
         }
     }
-    Track& track = found->second;
+    WorldData& data = found->second;
     if (recorder_) {
-        track.recorder = recorder_->of(entry.name);
+        data.recorder = recorder_->of(entry.name);
     }
     // A short wait for the disk does not count as a pause.
     const bool runs = entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait()) && !rules_.is_held(entry);
-    if (track.pace.follow(entry, runs, tools_.clock.now())) {
-        track.snapshots.show_change(); // the state changed, as after a Pause
+    if (data.pace.follow(entry, runs, tools_.clock.now())) {
+        data.snapshots.show_change(); // the state changed, as after a Pause
     }
 }
 
 void Pace::show_change(const std::string& world) {
-    if (const auto track = tracks_.find(world); track != tracks_.end()) {
-        track->second.snapshots.show_change();
+    if (const auto data = world_data_.find(world); data != world_data_.end()) {
+        data->second.snapshots.show_change();
     }
 }
 
 void Pace::set_demand(WorldDemands demand) {
     demand_ = std::move(demand);
-    for (auto& [name, track] : tracks_) {
-        const auto watch = demand_.find(name);
-        track.snapshots.set_demand(watch == demand_.end() ? nullptr : &watch->second);
+    for (auto& [name, data] : world_data_) {
+        const auto wanted = demand_.find(name);
+        data.snapshots.set_demand(wanted == demand_.end() ? nullptr : &wanted->second);
     }
 }
 
@@ -79,29 +79,29 @@ Pace::Due Pace::advance_paced(std::vector<Contender>& contenders) {
         if (!wants_tick(*entry)) {
             continue;
         }
-        Track& track = track_of(*entry);
+        WorldData& data = data_of(*entry);
         if (!entry->control.speed) {
-            contenders.push_back({track.user, &track.turn, entry.get()});
+            contenders.push_back({data.user, &data.turn, entry.get()});
             continue;
         }
         const auto now = tools_.clock.now();
-        if (track.pace.due() <= now) {
-            if (entry->slowed && has_more_than_its_share(track.user, contenders)) {
-                contenders.push_back({track.user, &track.turn, entry.get()});
+        if (data.pace.due() <= now) {
+            if (entry->slowed && has_more_than_its_share(data.user, contenders)) {
+                contenders.push_back({data.user, &data.turn, entry.get()});
                 continue;
             }
-            advance_slice(*entry, track, now + slice);
-            if (!has_more_than_its_share(track.user, contenders)) {
-                shares_.serve(track.user); // users who want nothing now do not save time
+            advance_slice(*entry, data, now + slice);
+            if (!has_more_than_its_share(data.user, contenders)) {
+                shares_.serve(data.user); // users who want nothing now do not save time
             }
-            shares_.spend(track.user, tools_.clock.now() - now);
+            shares_.spend(data.user, tools_.clock.now() - now);
             if (!entry->wants_tick()) {
                 continue;
             }
         }
-        due.next = earlier(due.next, track.pace.due());
+        due.next = earlier(due.next, data.pace.due());
         if (!entry->slowed) {
-            due.in_time = earlier(due.in_time, track.pace.due());
+            due.in_time = earlier(due.in_time, data.pace.due());
         }
     }
     return due;
@@ -113,7 +113,7 @@ bool Pace::has_more_than_its_share(const std::string& user, std::span<const Cont
     };
     return std::ranges::any_of(contenders, waits_with_less, &Contender::user) ||
            std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
-               return wants_tick(*entry) && waits_with_less(track_of(*entry).user);
+               return wants_tick(*entry) && waits_with_less(data_of(*entry).user);
            });
 }
 
@@ -131,7 +131,7 @@ std::optional<Clock::time_point> Pace::serve(std::vector<Contender>& contenders,
     // A seek shares the processor with worlds that cannot keep their pace.
     const auto end = *earlier(began + slice, next.world != nullptr ? due.next : due.in_time);
     if (next.world != nullptr) {
-        advance_slice(*next.world, track_of(*next.world), end);
+        advance_slice(*next.world, data_of(*next.world), end);
     } else {
         rules_.advance_seek(next.seek, [&] {
             return tools_.clock.now() >= end || tools_.mailbox.pending() || tools_.demand.changed();
@@ -143,36 +143,36 @@ std::optional<Clock::time_point> Pace::serve(std::vector<Contender>& contenders,
         return now;
     }
     const simulation::Entry& world = *next.world;
-    return !world.wants_tick() ? std::nullopt : std::optional{world.control.speed ? track_of(world).pace.due() : now};
+    return !world.wants_tick() ? std::nullopt : std::optional{world.control.speed ? data_of(world).pace.due() : now};
 }
 
 bool Pace::is_work_due(Clock::time_point now) const {
     return std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
-        return wants_tick(*entry) && (!entry->control.speed || track_of(*entry).pace.due() <= now);
+        return wants_tick(*entry) && (!entry->control.speed || data_of(*entry).pace.due() <= now);
     });
 }
 
 void Pace::measure_and_show(Clock::time_point now) {
     for (const auto& entry : laboratory_.entries()) {
-        Track& track = track_of(*entry);
-        measure_and_show(*entry, track, now);
-        if (track.counted) {
-            track.counted->ticks_per_s.set(entry->ticks_per_s);
+        WorldData& data = data_of(*entry);
+        measure_and_show(*entry, data, now);
+        if (data.counted) {
+            data.counted->ticks_per_s.set(entry->ticks_per_s);
         }
     }
 }
 
-void Pace::advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end) {
+void Pace::advance_slice(simulation::Entry& entry, WorldData& data, Clock::time_point end) {
     const bool paced = entry.control.speed.has_value();
     auto before = tools_.clock.now();
     do {
-        const std::uint64_t ticks_per_clock_reading = ticks_in(between_clock_readings, track.pace.tick_time(), 100);
+        const std::uint64_t ticks_per_clock_reading = ticks_in(between_clock_readings, data.pace.tick_time(), 100);
         std::uint64_t taken = 0;
         bool stopped = false;
         do {
-            taken += advance(entry, track);
-            if (track.recorder) {
-                track.recorder->follow(entry.world);
+            taken += advance(entry, data);
+            if (data.recorder) {
+                data.recorder->follow(entry.world);
             }
             rules_.after_tick(entry);
             stopped = !entry.wants_tick();
@@ -180,55 +180,55 @@ void Pace::advance_slice(simulation::Entry& entry, Track& track, Clock::time_poi
         } while (!paced && taken < ticks_per_clock_reading && !stopped && !tools_.mailbox.pending());
         const auto now = tools_.clock.now();
         const auto spent = now - std::exchange(before, now);
-        track.pace.advanced(entry, taken, spent, now);
+        data.pace.advanced(entry, taken, spent, now);
         if (stopped) {
-            track.pace.stop(entry);
-            track.snapshots.show_change(); // the world has reached a goal
+            data.pace.stop(entry);
+            data.snapshots.show_change(); // the world has reached a goal
         }
-        measure_and_show(entry, track, now);
-        if (track.counted) {
-            track.counted->tick_time.add(track.pace.tick_time(), taken);
+        measure_and_show(entry, data, now);
+        if (data.counted) {
+            data.counted->tick_time.add(data.pace.tick_time(), taken);
         }
-        make_due_checkpoint(entry, track, spent);
-        if (stopped || now >= end || (paced && track.pace.due() > now)) {
+        make_due_checkpoint(entry, data, spent);
+        if (stopped || now >= end || (paced && data.pace.due() > now)) {
             return;
         }
     } while (!tools_.mailbox.pending() && !tools_.demand.changed());
 }
 
-std::uint64_t Pace::advance(simulation::Entry& entry, Track& track) {
+std::uint64_t Pace::advance(simulation::Entry& entry, WorldData& data) {
     const std::uint64_t before = entry.world.moment().tick;
     std::uint64_t ticks = 1;
     if (entry.world.is_shared() && !entry.control.speed) {
         const std::uint64_t to_next_hash = run_file::ticks_per_hash - before % run_file::ticks_per_hash;
-        ticks = std::min(ticks_in(between_exchanges, track.pace.tick_time(), run_file::ticks_per_hash), to_next_hash);
+        ticks = std::min(ticks_in(between_exchanges, data.pace.tick_time(), run_file::ticks_per_hash), to_next_hash);
     }
     laboratory_.advance(entry, ticks, tools_.executor);
     return entry.world.moment().tick - before;
 }
 
-void Pace::make_due_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent) {
-    if (!track.recorder || !track.recorder->checkpoint_due(entry.world, spent)) {
+void Pace::make_due_checkpoint(const simulation::Entry& entry, WorldData& data, Clock::duration spent) {
+    if (!data.recorder || !data.recorder->checkpoint_due(entry.world, spent)) {
         return;
     }
     const auto began = tools_.clock.now();
-    track.recorder->make_checkpoint(entry.world, tools_.executor);
-    track.recorder->checkpoint_took(tools_.clock.now() - began);
+    data.recorder->make_checkpoint(entry.world, tools_.executor);
+    data.recorder->checkpoint_took(tools_.clock.now() - began);
 }
 
-void Pace::measure_and_show(simulation::Entry& world, Track& track, Clock::time_point now) {
-    if (track.pace.measure(world, now)) {
-        track.snapshots.show_change();
+void Pace::measure_and_show(simulation::Entry& world, WorldData& data, Clock::time_point now) {
+    if (data.pace.measure(world, now)) {
+        data.snapshots.show_change();
     }
-    if (!track.snapshots.is_due(world.world, now)) {
+    if (!data.snapshots.is_due(world.world, now)) {
         return;
     }
     const auto began = tools_.clock.now();
-    outputs_.snapshot(pool_.take(world, track.snapshots.wanted_islands(world.world), track.snapshots.shows_change()));
-    if (track.counted) {
-        track.counted->snapshot_time.add(tools_.clock.now() - began);
+    outputs_.snapshot(pool_.take(world, data.snapshots.wanted_islands(world.world), data.snapshots.shows_change()));
+    if (data.counted) {
+        data.counted->snapshot_time.add(tools_.clock.now() - began);
     }
-    track.snapshots.taken(world.world, now);
+    data.snapshots.taken(world.world, now);
 }
 
 } // namespace evod::runtime

@@ -93,8 +93,8 @@ class Pace {
     void measure_and_show(Clock::time_point now);
 
   private:
-    /// What belongs to one world.
-    struct Track {
+    /// The data that the loop keeps about one world.
+    struct WorldData {
         recording::RunRecorder* recorder = nullptr;
         std::shared_ptr<metrics::World> counted; // nullptr: no metrics
         std::string user;
@@ -102,8 +102,8 @@ class Pace {
         WorldPace pace;
         SnapshotTimes snapshots;
     };
-    Track& track_of(const simulation::Entry& world) { return tracks_.find(world.name)->second; }
-    const Track& track_of(const simulation::Entry& world) const { return tracks_.find(world.name)->second; }
+    WorldData& data_of(const simulation::Entry& world) { return world_data_.find(world.name)->second; }
+    const WorldData& data_of(const simulation::Entry& world) const { return world_data_.find(world.name)->second; }
     bool wants_tick(const simulation::Entry& world) const {
         return world.wants_tick() && !rules_.waits_for_disk(world) && !rules_.is_held(world);
     }
@@ -120,22 +120,22 @@ class Pace {
     bool has_more_than_its_share(const std::string& user, std::span<const Contender> contenders) const;
     /// Gives a slice to one contender. Returns the time at which they must be served again.
     std::optional<Clock::time_point> serve(std::vector<Contender>& contenders, const Due& due);
-    void advance_slice(simulation::Entry& world, Track& track, Clock::time_point end);
+    void advance_slice(simulation::Entry& world, WorldData& data, Clock::time_point end);
     /// Advances a world by one tick or, if processes share it, by as many as it should before they exchange results.
     /// Returns the number of ticks.
-    std::uint64_t advance(simulation::Entry& world, Track& track);
+    std::uint64_t advance(simulation::Entry& world, WorldData& data);
     /// Creates a checkpoint if one is due.
     ///
     /// spent  time that the last ticks and the work after them took.
-    void make_due_checkpoint(const simulation::Entry& world, Track& track, Clock::duration spent);
-    void measure_and_show(simulation::Entry& world, Track& track, Clock::time_point now);
+    void make_due_checkpoint(const simulation::Entry& world, WorldData& data, Clock::duration spent);
+    void measure_and_show(simulation::Entry& world, WorldData& data, Clock::time_point now);
 
     const LoopTools tools_;
     simulation::Laboratory& laboratory_;
     recording::Recorder* const recorder_;
     const LoopOutputs& outputs_;
     Rules& rules_;
-    std::map<std::string, Track, std::less<>> tracks_; // by name of the world
+    std::map<std::string, WorldData, std::less<>> world_data_; // by name of the world
     TimeShares shares_;
     std::uint64_t last_turn_ = 0;
     WorldDemands demand_;

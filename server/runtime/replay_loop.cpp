@@ -3,6 +3,7 @@
 #include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
 #include "server/protocol/worlds.h"
+#include "server/runtime/fork.h"
 
 #include <algorithm>
 #include <memory>
@@ -45,33 +46,33 @@ ReplayLoop::ReplayLoop(const LoopTools& tools, LoopOutputs outputs, JobTurns& tu
 }
 
 void ReplayLoop::handle(Mail& mail) {
-    std::visit(
-        base::Overloaded{[this](BringWorld& request) { begin_seek(request.fork, request.run.run, request.run.until); },
-                         [this](SeekRead& read) { report_memory(seeks_.take(read)); },
-                         [this](RecordsRead& read) {
-                             shown_.take(read);
-                             if (const ShownReplays::Owner* owner = shown_.owner_of(read.replay)) {
-                                 report_memory(owner->session);
-                             }
-                         },
-                         [this](FindRun& run) { find_run(run); },
-                         [&](ReplayMail& request) {
-                             if (!answer(request)) {
-                                 SimulationLoop::handle(mail);
-                             }
-                         },
-                         [&](CommandMail& command) {
-                             if (!fork(command)) {
-                                 SimulationLoop::handle(mail);
-                             }
-                         },
-                         [this](EndReplay& ended) { end(ended); },
-                         [&](SessionEnded& ended) {
-                             forget(ended.session);
-                             SimulationLoop::handle(mail);
-                         },
-                         [&](auto&) { SimulationLoop::handle(mail); }},
-        mail);
+    std::visit(base::Overloaded{
+                   [this](ComputeForkWorld& request) { begin_seek(request.fork, request.run.run, request.run.until); },
+                   [this](SeekRead& read) { report_memory(seeks_.take(read)); },
+                   [this](RecordsRead& read) {
+                       shown_.take(read);
+                       if (const ShownReplays::Owner* owner = shown_.owner_of(read.replay)) {
+                           report_memory(owner->session);
+                       }
+                   },
+                   [this](FindRun& run) { find_run(run); },
+                   [&](ReplayMail& request) {
+                       if (!answer(request)) {
+                           SimulationLoop::handle(mail);
+                       }
+                   },
+                   [&](CommandMail& command) {
+                       if (!fork(command)) {
+                           SimulationLoop::handle(mail);
+                       }
+                   },
+                   [this](EndReplay& ended) { end(ended); },
+                   [&](SessionEnded& ended) {
+                       forget(ended.session);
+                       SimulationLoop::handle(mail);
+                   },
+                   [&](auto&) { SimulationLoop::handle(mail); }},
+               mail);
 }
 
 void ReplayLoop::update_worlds() {
@@ -185,17 +186,17 @@ bool ReplayLoop::fork(const CommandMail& mail) {
         if (run == nullptr) {
             return false; // the original is not a replay
         }
-        Mail coming = ForkComing{command->name, !command->at_generation};
-        SimulationLoop::handle(coming);
+        Mail announced = ForkAnnounced{command->name, !command->at_generation};
+        SimulationLoop::handle(announced);
     }
     if (!entry) {
-        brought(mail, {}, entry.error());
-    } else if (command->at_generation && *command->at_generation != (*entry)->world.moment().generation) {
+        send_fork_world(mail, {}, entry.error());
+    } else if (begins_in_another_generation(*command, (*entry)->world)) {
         begin_seek(mail, *run, {});
     } else {
-        brought(mail, (*entry)->run_id, base::within_memory([&]() -> Result<simulation::World> {
-                    return (*entry)->world.copy(tools_.executor);
-                }));
+        send_fork_world(mail, (*entry)->run_id, base::within_memory([&]() -> Result<simulation::World> {
+                            return (*entry)->world.copy(tools_.executor);
+                        }));
     }
     return true;
 }
@@ -206,15 +207,16 @@ void ReplayLoop::begin_seek(const CommandMail& fork, const replay::StoredRun& ru
     seeks_.begin({.purpose = {fork}, .run = run, .to = to, .until = until});
 }
 
-void ReplayLoop::brought(const CommandMail& fork, const simulation::RunId& run_id, Result<simulation::World> world) {
-    outputs_.reply(WorldBrought{fork, run_id, std::make_shared<Result<simulation::World>>(std::move(world))});
+void ReplayLoop::send_fork_world(const CommandMail& fork, const simulation::RunId& run_id,
+                                 Result<simulation::World> world) {
+    outputs_.reply(ForkWorldComputed{fork, run_id, std::make_shared<Result<simulation::World>>(std::move(world))});
 }
 
 void ReplayLoop::finish(Seeks::Ended ended) {
     const replay::StoredRun& run = ended.request.run;
     if (const auto* fork = std::get_if<CommandMail>(&ended.request.purpose.request)) {
-        return ended.result ? brought(*fork, run.run_id(), std::move(ended.result->rerun).take())
-                            : brought(*fork, run.run_id(), with_prefix("at_", ended.result.error()));
+        return ended.result ? send_fork_world(*fork, run.run_id(), std::move(ended.result->rerun).take())
+                            : send_fork_world(*fork, run.run_id(), with_prefix("at_", ended.result.error()));
     }
     finish(std::get<ReplayMail>(ended.request.purpose.request), ended.request.purpose.replay, run,
            std::move(ended.result));

@@ -55,7 +55,8 @@ class ReplayLoop final : public SimulationLoop {
     void finish(Seeks::Ended ended);
     void finish(const ReplayMail& mail, const std::string& moved, const replay::StoredRun& run,
                 base::Result<SeekResult> result);
-    void brought(const CommandMail& fork, const simulation::RunId& run_id, base::Result<simulation::World> world);
+    void send_fork_world(const CommandMail& fork, const simulation::RunId& run_id,
+                         base::Result<simulation::World> world);
     /// Reports the memory of a session's replays and seeks, if it has changed. 0: no session.
     void report_memory(std::uint64_t session);
     /// Closes all replays of a session that has ended, and cancels its seeks.

@@ -110,8 +110,8 @@ CommandDone refused(CommandDone done, base::Refusal why);
 /// What the network thread answers.
 using Answer = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, ReplayEnded, RunFound, Pong,
                             ExportPartDone, BreedingDone>;
-/// What the outbox contains. WorldBrought is on its way to the thread of the live worlds (simulations.h).
+/// What the outbox contains. ForkWorldComputed is on its way to the thread of the live worlds (simulations.h).
 using Reply = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, ReplayEnded, RunFound, Pong,
-                           ExportPartDone, BreedingDone, WorldBrought, recording::Receipt>;
+                           ExportPartDone, BreedingDone, ForkWorldComputed, recording::Receipt>;
 
 } // namespace evod::runtime

@@ -56,12 +56,12 @@ bool Simulations::try_send(CommandMail mail) {
     const auto* fork = std::get_if<simulation::ForkWorld>(&mail.command);
     if (fork != nullptr && !shows_file_ && simulation::is_replay_name(fork->world)) {
         // The replay is forked as it is when the command comes, so the command goes to its thread.
-        ForkComing coming{fork->name, !fork->at_generation};
+        ForkAnnounced announced{fork->name, !fork->at_generation};
         const std::string user = mail.user;
         if (!replays_.mailbox.try_push(std::move(mail), user)) {
             return false;
         }
-        live_.mailbox.push(std::move(coming));
+        live_.mailbox.push(std::move(announced));
         return true;
     }
     const std::string world = std::visit(
@@ -122,14 +122,14 @@ void Simulations::forget(std::uint64_t session) {
 }
 
 std::optional<Answer> Simulations::pass_on(Reply reply) {
-    if (auto* brought = std::get_if<WorldBrought>(&reply)) {
-        part_of("").mailbox.push(std::move(*brought));
+    if (auto* computed = std::get_if<ForkWorldComputed>(&reply)) {
+        part_of("").mailbox.push(std::move(*computed));
         return std::nullopt;
     }
     auto answer = unwritten_.pass(std::move(reply));
     if (auto* found = answer ? std::get_if<RunFound>(&*answer) : nullptr) {
         if (auto* fork = std::get_if<CommandMail>(&found->mail.purpose)) {
-            replays_.mailbox.push(BringWorld{std::move(*fork), *std::move(found->run)});
+            replays_.mailbox.push(ComputeForkWorld{std::move(*fork), *std::move(found->run)});
             return std::nullopt;
         }
         if (auto* replay = std::get_if<ReplayMail>(&found->mail.purpose)) {

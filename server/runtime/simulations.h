@@ -34,7 +34,7 @@ class Simulations {
     /// wants.
     static constexpr int replay_niceness = 7;
 
-    /// shows_file  there are no live worlds apart from the replay of a run file.
+    /// shows_file  the server shows a run file: its only world is the replay of it.
     explicit Simulations(bool shows_file, std::size_t mailbox_capacity = mailbox_commands_max)
         : shows_file_{shows_file}, live_{Mailbox{mailbox_capacity}, {}}, replays_{Mailbox{mailbox_capacity}, {}} {}
 

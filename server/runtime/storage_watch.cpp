@@ -97,8 +97,8 @@ void StorageWatch::poll_files() {
             found == displaced_.end() ? *laboratory_.storage()
                                       : simulation::Storage{simulation::StorageState::Stalled, found->second.message};
         entry->storage = now;
-        const auto known = before.find(entry->name);
-        if ((known == before.end()) != (found == displaced_.end())) {
+        const auto was_displaced = before.find(entry->name);
+        if ((was_displaced == before.end()) != (found == displaced_.end())) {
             outputs_.storage_of_world(entry->name, now);
         }
     }

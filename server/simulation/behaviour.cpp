@@ -26,7 +26,7 @@ ChoiceRules choice_rules(const BehaviourRules& rules, const base::RandomKey& key
             .pair_key = key.pair_key()};
 }
 
-BrainColumns brain_columns(Living& living) {
+BrainColumns brain_columns(LivingOrganisms& living) {
     return {
         .weights = living.weights.data(), .heading = living.heading.data(), .base_health = living.base_health.data()};
 }
@@ -56,7 +56,7 @@ struct FewOrganisms {
     std::array<std::uint32_t, room> id{};
     View food, poison;
 
-    void put(std::size_t k, const physics::Circles& bodies, const Living& living, std::uint32_t body) {
+    void put(std::size_t k, const physics::Circles& bodies, const LivingOrganisms& living, std::uint32_t body) {
         x[k] = bodies.x[body];
         y[k] = bodies.y[body];
         velocity_x[k] = bodies.velocity_x[body];
@@ -86,8 +86,8 @@ struct FewOrganisms {
 
 } // namespace
 
-OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perception& perception, const Items& food,
-                                 const Items& poison) {
+OrganismColumns organism_columns(physics::Circles& bodies, LivingOrganisms& living, Perception& perception,
+                                 const Items& food, const Items& poison) {
     OrganismColumns columns{.x = bodies.x.data(),
                             .y = bodies.y.data(),
                             .velocity_x = bodies.velocity_x.data(),
@@ -129,8 +129,8 @@ SteeringRules steering_rules(const evolution::BrainLayout& layout, const paramet
             .height = area.height};
 }
 
-void live_and_steer(const OrganismColumns& columns, Living& living, const SteeringRules& rules, base::Range block,
-                    ChosenForces& outcome) {
+void live_and_steer(const OrganismColumns& columns, LivingOrganisms& living, const SteeringRules& rules,
+                    base::Range block, ChosenForces& outcome) {
     EVOD_ASSERT(block.begin % physics::lanes_max == 0);
     EVOD_ASSERT(block.begin <= block.end);
     EVOD_ASSERT(block.end - block.begin <= outcome.x.size());
@@ -147,11 +147,11 @@ namespace {
 /// Copies of the networks of a few organisms, for BrainKernels::predict().
 class FewBrains {
   public:
-    FewBrains(const Living& living, std::size_t count) : weights_(living.weight_count()) {
+    FewBrains(const LivingOrganisms& living, std::size_t count) : weights_(living.weight_count()) {
         few_.clear(living.weight_count());
         few_.resize(count);
     }
-    void put(std::size_t k, const Living& living, std::uint32_t body) {
+    void put(std::size_t k, const LivingOrganisms& living, std::uint32_t body) {
         for (std::size_t w = 0; w < weights_.size(); ++w) {
             weights_[w] = living.weights[living.first_weight(body) + w * physics::lanes_max];
         }
@@ -161,13 +161,13 @@ class FewBrains {
     BrainColumns columns() { return brain_columns(few_); }
 
   private:
-    Living few_;
+    LivingOrganisms few_;
     std::vector<float> weights_;
 };
 
 /// Copies organisms in groups, with what they see, and calls predict(few, first, count) for each group.
 template <class Predict>
-void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const Living& living, const Items& food,
+void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
                   const Items& poison, std::span<const std::uint32_t> bodies_asked, Predict&& predict) {
     for (std::size_t begin = 0; begin < bodies_asked.size(); begin += FewOrganisms::room) {
         const std::size_t count = std::min(bodies_asked.size() - begin, FewOrganisms::room);
@@ -184,9 +184,10 @@ void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const Livin
 
 } // namespace
 
-void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
-                        const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
-                        std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions) {
+void predict_intentions(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
+                        const Items& poison, const BehaviourRules& rules, const base::RandomKey& key,
+                        std::uint32_t tick, std::span<const std::uint32_t> bodies_asked,
+                        std::span<Intention> intentions) {
     EVOD_ASSERT(bodies_asked.size() == intentions.size());
     FewOrganisms few;
     ChosenForces forces;
@@ -204,9 +205,9 @@ void predict_intentions(const physics::Circles& bodies, const Living& living, co
     });
 }
 
-void predict_steering(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
-                      const SteeringRules& rules, double tick_s, std::span<const std::uint32_t> bodies_asked,
-                      std::span<Intention> intentions) {
+void predict_steering(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
+                      const Items& poison, const SteeringRules& rules, double tick_s,
+                      std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions) {
     EVOD_ASSERT(bodies_asked.size() == intentions.size());
     EVOD_ASSERT(rules.weight_count == living.weight_count());
     FewOrganisms few;
@@ -230,7 +231,7 @@ void predict_steering(const physics::Circles& bodies, const Living& living, cons
     });
 }
 
-Activations predict_activations(const physics::Circles& bodies, const Living& living, const Items& food,
+Activations predict_activations(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
                                 const Items& poison, const SteeringRules& rules, std::uint32_t body) {
     EVOD_ASSERT(rules.weight_count == living.weight_count());
     FewOrganisms few;

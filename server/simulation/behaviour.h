@@ -17,11 +17,11 @@
 
 #include "server/base/random.h"
 #include "server/evolution/brain_layout.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/brain_kernels.h"
 #include "server/simulation/items.h"
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 #include "server/simulation/organism_kernels.h"
 #include "server/simulation/perception.h"
 
@@ -39,8 +39,8 @@ struct BehaviourRules {
 };
 
 /// Returns pointers to the columns that kernels process. The pointers are valid until a column grows or is reordered.
-OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Perception& perception, const Items& food,
-                                 const Items& poison);
+OrganismColumns organism_columns(physics::Circles& bodies, LivingOrganisms& living, Perception& perception,
+                                 const Items& food, const Items& poison);
 
 /// The forces that the organisms of one block choose, kg px/s².
 struct ChosenForces {
@@ -60,8 +60,8 @@ SteeringRules steering_rules(const evolution::BrainLayout& layout, const paramet
 /// Perception::search() for the block first.
 ///
 /// outcome  receives the forces on the organisms; if they are kinematic, their new velocities, px/s.
-void live_and_steer(const OrganismColumns& columns, Living& living, const SteeringRules& rules, base::Range block,
-                    ChosenForces& outcome);
+void live_and_steer(const OrganismColumns& columns, LivingOrganisms& living, const SteeringRules& rules,
+                    base::Range block, ChosenForces& outcome);
 
 /// What an organism will do in the next tick.
 struct Intention {
@@ -74,15 +74,16 @@ struct Intention {
 /// `bodies_asked` must contain no placeholders of dead organisms.
 ///
 /// intentions  receives one Intention for each element of bodies_asked.
-void predict_intentions(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
-                        const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
-                        std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions);
+void predict_intentions(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
+                        const Items& poison, const BehaviourRules& rules, const base::RandomKey& key,
+                        std::uint32_t tick, std::span<const std::uint32_t> bodies_asked,
+                        std::span<Intention> intentions);
 
 /// As predict_intentions(), for organisms with a network. If they are kinematic, the predicted force is the one that
 /// would change the velocity of the body as the network does.
-void predict_steering(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
-                      const SteeringRules& rules, double tick_s, std::span<const std::uint32_t> bodies_asked,
-                      std::span<Intention> intentions);
+void predict_steering(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
+                      const Items& poison, const SteeringRules& rules, double tick_s,
+                      std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions);
 
 /// The neurons of a network at the start of the next tick.
 struct Activations {
@@ -90,7 +91,7 @@ struct Activations {
 };
 /// Computes the activations with which the network of an organism will steer it if no item reappears before the next
 /// tick. `body` must not be the placeholder of a dead organism.
-Activations predict_activations(const physics::Circles& bodies, const Living& living, const Items& food,
+Activations predict_activations(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
                                 const Items& poison, const SteeringRules& rules, std::uint32_t body);
 
 } // namespace evod::simulation

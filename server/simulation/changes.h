@@ -6,7 +6,7 @@
 #pragma once
 
 #include "server/base/actor.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include <cstdint>
 #include <deque>

@@ -6,7 +6,7 @@
 #include "server/base/actor.h"
 #include "server/base/random.h"
 #include "server/evolution/chromosome.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 #include "server/simulation/first_population.h"
 

@@ -175,7 +175,7 @@ std::optional<Refusal> refusal_of_counts(const Island& island, const PlaceEntiti
         static_cast<std::size_t>(std::ranges::count(command.items, ItemKind::Food, &PlaceEntities::Item::kind));
     const auto is_too_many = [](std::size_t placed, std::size_t more) { return placed + more > placed_max; };
     const auto placed_of = [](const Items& items) { return std::size_t{items.size() - items.first_count()}; };
-    const std::size_t organisms = island.fate().cause.size() - island.bred_count();
+    const std::size_t organisms = island.life_records().cause.size() - island.bred_count();
     if (is_too_many(placed_of(island.food()), food) ||
         is_too_many(placed_of(island.poison()), command.items.size() - food) ||
         is_too_many(organisms, command.organisms.size())) {
@@ -280,9 +280,9 @@ void Island::remove(ItemKind kind, std::uint32_t item) {
 
 std::uint32_t Island::place(std::span<const NewOrganism> organisms, const parameters::Parameters& parameters) {
     EVOD_ASSERT(has_bodies());
-    const auto first = static_cast<std::uint32_t>(fate_.cause.size());
+    const auto first = static_cast<std::uint32_t>(life_records_.cause.size());
     append(organisms, parameters);
-    for (std::uint32_t id = first; id < fate_.cause.size(); ++id) {
+    for (std::uint32_t id = first; id < life_records_.cause.size(); ++id) {
         hash_ += hash_of_birth(id);
         hash_ += hash_of_organism(bodies_, living_, body_of_[id]);
     }
@@ -313,7 +313,7 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
         if (!born_.parents.empty()) {
             born_.parents.push_back(no_parents);
         }
-        fate_.add();
+        life_records_.add();
         body_of_.push_back(static_cast<std::uint32_t>(bodies + i));
         bodies_.put(
             bodies + i,
@@ -328,8 +328,8 @@ void Island::remove_organism(std::uint32_t id, std::uint32_t tick) {
     const std::uint32_t body = body_of_[id];
     EVOD_ASSERT(body != no_body);
     hash_ -= hash_of_organism(bodies_, living_, body);
-    fate_.cause[id] = CauseOfDeath::Removed;
-    fate_.lived_ticks[id] = tick - placed_tick(id);
+    life_records_.cause[id] = CauseOfDeath::Removed;
+    life_records_.lived_ticks[id] = tick - placed_tick(id);
     body_of_[id] = no_body;
     bodies_.remove(body);
     perception_.remove(body);

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "server/base/result.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/simulation/commands.h"
 #include "server/simulation/world.h"
 

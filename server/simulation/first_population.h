@@ -3,7 +3,7 @@
 
 #include "server/base/result.h"
 #include "server/evolution/chromosome.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include <memory>
 #include <optional>

@@ -63,7 +63,7 @@ void Island::begin_generation(const parameters::Parameters& parameters, std::uin
     placed_.clear();
     behaviour_key_ = base::RandomKey{seed_, base::Purpose::Behaviour, index_, generation};
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
-    fate_.begin_generation(organisms);
+    life_records_.begin_generation(organisms);
     counts_ = {};
     food_counts_ = parameters.fitness_per_food != 0;
     poison_counts_ = parameters.fitness_per_poison != 0;
@@ -358,10 +358,10 @@ base::StateHash Island::whole_hash() const {
 
 Island::Life Island::life(std::uint32_t id, std::uint32_t tick) const {
     const bool dead = body_of_[id] == no_body;
-    return {.lived_ticks = dead ? fate_.lived_ticks[id] : tick - placed_tick(id),
+    return {.lived_ticks = dead ? life_records_.lived_ticks[id] : tick - placed_tick(id),
             .health = dead ? 0 : living_.health[body_of_[id]],
-            .food_eaten = fate_.food_eaten[id],
-            .poison_eaten = fate_.poison_eaten[id]};
+            .food_eaten = life_records_.food_eaten[id],
+            .poison_eaten = life_records_.poison_eaten[id]};
 }
 
 std::vector<double> Island::fitness(const parameters::Parameters& parameters, std::uint32_t tick,
@@ -371,12 +371,12 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
     if (parameters.fitness == parameters::FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
-                const Life its = life(static_cast<std::uint32_t>(id), tick);
-                const double lived_s = its.lived_ticks * parameters.tick_s;
+                const Life organism = life(static_cast<std::uint32_t>(id), tick);
+                const double lived_s = organism.lived_ticks * parameters.tick_s;
                 fitness[id] = parameters.fitness_per_second * lived_s +
-                              parameters.fitness_per_health * static_cast<double>(its.health) +
-                              parameters.fitness_per_food * its.food_eaten +
-                              parameters.fitness_per_poison * its.poison_eaten;
+                              parameters.fitness_per_health * static_cast<double>(organism.health) +
+                              parameters.fitness_per_food * organism.food_eaten +
+                              parameters.fitness_per_poison * organism.poison_eaten;
             }
         });
         return fitness;

@@ -20,7 +20,7 @@
 #include "server/base/state_hash.h"
 #include "server/evolution/chromosome.h"
 #include "server/evolution/next_generation.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/physics/bodies.h"
 #include "server/physics/motion_report.h"
 #include "server/physics/step.h"
@@ -28,7 +28,7 @@
 #include "server/simulation/commands.h"
 #include "server/simulation/feeding.h"
 #include "server/simulation/items.h"
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 #include "server/simulation/perception.h"
 #include "server/simulation/placement.h"
 #include "server/simulation/statistics.h"
@@ -124,7 +124,7 @@ class Island {
     base::StateHash hash() const { return hash_; }
 
     std::uint32_t alive_count() const { return alive_count_; }
-    const Living& living() const { return living_; } // indexed by body
+    const LivingOrganisms& living() const { return living_; } // indexed by body
     /// The circles of the living organisms, in any order, and placeholders (void circles) of dead organisms.
     const physics::Circles& bodies() const { return bodies_; }
     const physics::Boxes& boxes() const { return boxes_; } // first the crates, then the obstacles
@@ -145,7 +145,7 @@ class Island {
     std::uint32_t placed_tick(std::uint32_t id) const { return id < bred_count() ? 0 : placed_[id - bred_count()]; }
     /// Whether nothing has been placed, removed or eaten, and no organism has died.
     bool is_as_begun() const;
-    const Fate& fate() const { return fate_; }
+    const LifeRecords& life_records() const { return life_records_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
     /// Returns all live statistics except health_mean, which would need a loop over all organisms.
@@ -175,7 +175,7 @@ class Island {
     /// not 0; otherwise the numbers of eaten items do not affect the run.
     base::StateHash hash_of_eaten(std::uint32_t id) const;
     base::StateHash whole_hash() const;
-    bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
+    bool has_bodies() const { return body_of_.size() == life_records_.cause.size(); }
     OrganismColumns columns() { return organism_columns(bodies_, living_, perception_, food_, poison_); }
 
     static constexpr std::size_t organisms_per_block = 1024;
@@ -218,7 +218,7 @@ class Island {
     physics::Stepper stepper_;
     evolution::NextGeneration born_;
     std::vector<std::uint32_t> placed_; // placed_tick() of the organisms that were placed
-    Living living_;
+    LivingOrganisms living_;
     physics::Circles bodies_;
     physics::Boxes boxes_;
     BoxGrid obstacles_; // the boxes that do not move: no item may overlap them
@@ -226,7 +226,7 @@ class Island {
     Items food_, poison_;
     Perception perception_;
     Feeding food_feeding_, poison_feeding_;
-    Fate fate_;
+    LifeRecords life_records_;
     IslandCounts counts_;
     std::uint32_t alive_count_ = 0;
     base::Column<std::uint32_t> body_of_; // index in bodies(), by id

@@ -11,7 +11,7 @@
 #include "server/base/state_hash.h"
 #include "server/evolution/migration.h"
 #include "server/evolution/next_generation.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/simulation/commands.h"
 #include "server/simulation/island.h"
 #include "server/simulation/statistics.h"

@@ -73,7 +73,7 @@ void LocalIslands::restore(const parameters::Parameters& begun_with, const World
     for_each_island(executor,
                     [&](std::size_t i) { islands_[i].restore(state.islands[i], tick, begun_with, executor); });
     for (std::size_t i = 0; i < founders_.size(); ++i) {
-        founders_[i].resize(islands_[i].fate().cause.size(), no_founder);
+        founders_[i].resize(islands_[i].life_records().cause.size(), no_founder);
     }
     fitness_ = state.given_fitness;
     if (fitness_.empty() && !state.ended.empty()) {
@@ -234,7 +234,7 @@ EntityIds LocalIslands::place(const PlaceEntities& command, const parameters::Pa
         ids.organisms.resize(organisms.size());
         std::iota(ids.organisms.begin(), ids.organisms.end(), island.place(organisms, parameters));
         if (!founders_.empty()) {
-            founders_[command.island - first_].resize(island.fate().cause.size(), no_founder);
+            founders_[command.island - first_].resize(island.life_records().cause.size(), no_founder);
         }
     }
     summarise(tick == 0);
@@ -269,8 +269,8 @@ BredIslands LocalIslands::bred() const {
 std::vector<IslandOutcome> LocalIslands::outcomes() const {
     std::vector<IslandOutcome> outcomes;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
-        const Fate& fate = islands_[i].fate();
-        outcomes.push_back({fitness_[i], fate.lived_ticks, fate.cause});
+        const LifeRecords& life_records = islands_[i].life_records();
+        outcomes.push_back({fitness_[i], life_records.lived_ticks, life_records.cause});
     }
     return outcomes;
 }

@@ -59,7 +59,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
     block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
     for (const Touch& touch : food_feeding_.touches(index)) {
         food_.prefetch_item(touch.item);
-        __builtin_prefetch(&fate_.food_eaten[touch.id], 1);
+        __builtin_prefetch(&life_records_.food_eaten[touch.id], 1);
         __builtin_prefetch(&bodies_.id[touch.body]);
         __builtin_prefetch(&bodies_.x[touch.body]);
         __builtin_prefetch(&bodies_.y[touch.body]);
@@ -78,7 +78,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         change_health(block, touch.body,
                       [&](float health) { return std::min(health + static_cast<float>(parameters.food_health), cap); });
         block.food_hash_change += food_.set_due(touch.item, tick);
-        count_eaten(block, touch.id, fate_.food_eaten, food_counts_);
+        count_eaten(block, touch.id, life_records_.food_eaten, food_counts_);
         ++block.food_eaten;
     }
     for (const Touch& touch : poison_feeding_.touches(index)) {
@@ -88,7 +88,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         change_health(block, touch.body,
                       [&](float health) { return health - static_cast<float>(parameters.poison_harm); });
         block.poison_hash_change += poison_.set_due(touch.item, tick);
-        count_eaten(block, touch.id, fate_.poison_eaten, poison_counts_);
+        count_eaten(block, touch.id, life_records_.poison_eaten, poison_counts_);
         ++block.poison_eaten;
     }
     // The cost of living is subtracted at the beginning of a tick, and poison at its end. If a dying organism ate
@@ -126,8 +126,8 @@ void Island::count_eaten(Block& block, std::uint32_t id, std::vector<std::uint32
 
 base::StateHash Island::hash_of_eaten(std::uint32_t id) const {
     constexpr std::uint32_t eaten_kind = 6; // the hashes of every run depend on it
-    const std::uint32_t food = food_counts_ ? fate_.food_eaten[id] : 0;
-    const std::uint32_t poison = poison_counts_ ? fate_.poison_eaten[id] : 0;
+    const std::uint32_t food = food_counts_ ? life_records_.food_eaten[id] : 0;
+    const std::uint32_t poison = poison_counts_ ? life_records_.poison_eaten[id] : 0;
     return food == 0 && poison == 0 ? base::StateHash{} : base::EntityHash{eaten_kind, id}.add(food, poison).finish();
 }
 
@@ -137,8 +137,8 @@ bool Island::is_dying(std::uint32_t body) const {
 
 void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause) {
     const std::uint32_t id = bodies_.id[body];
-    fate_.cause[id] = cause;
-    fate_.lived_ticks[id] = tick - placed_tick(id);
+    life_records_.cause[id] = cause;
+    life_records_.lived_ticks[id] = tick - placed_tick(id);
     block.hash -= hash_of_organism(bodies_, living_, body);
     body_of_[id] = no_body;
     bodies_.remove(body);

@@ -49,7 +49,7 @@ void notice(const std::int32_t* x, const std::int32_t* y, const ViewColumns& vie
         const Integers own_x = load<Integers>(x + i), own_y = load<Integers>(y + i);
         const Integers nearest_x = load<Integers>(view.x + i), nearest_y = load<Integers>(view.y + i);
         const Floats radius = load<Floats>(view.radius + i), old_others = load<Floats>(view.others + i);
-        const Floats known = lesser(offset_to_nearest(view, i, own_x, own_y).square, radius * radius);
+        const Floats known_square = lesser(offset_to_nearest(view, i, own_x, own_y).square, radius * radius);
         Floats others = old_others;
         for (std::size_t k = 0; k < change_count; ++k) {
             const Integers item_x = Integers{} + changes[k].x, item_y = Integers{} + changes[k].y;
@@ -60,7 +60,7 @@ void notice(const std::int32_t* x, const std::int32_t* y, const ViewColumns& vie
             const Floats dx = distances(own_x, item_x), dy = distances(own_y, item_y), square = dx * dx + dy * dy;
             Floats distance = square_root(square);
             distance -= distance * 1e-6f + 0.002f; // slightly less, to allow for rounding of distances and positions
-            const Floats bound = (distance > 0.0f) & (known < distance * distance) ? distance : all_lanes(-1.0f);
+            const Floats bound = (distance > 0.0f) & (known_square < distance * distance) ? distance : all_lanes(-1.0f);
             others = distance < others ? bound : others;
         }
         store(view.others + i, own_x != physics::void_position ? others : old_others);

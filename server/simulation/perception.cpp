@@ -46,7 +46,7 @@ float safely_below(float distance) {
 
 } // namespace
 
-void Perception::begin(const Circles& bodies, const Living& living, const Items& food, const Items& poison) {
+void Perception::begin(const Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison) {
     EVOD_ASSERT(living.health.size() == bodies.x.size());
     x_ = bodies.x;
     y_ = bodies.y;
@@ -66,7 +66,7 @@ void Perception::begin(View& view, const Circles& bodies, const base::Column<flo
     }
 }
 
-void Perception::search(const Circles& bodies, const Living& living, const Items& food, const Items& poison,
+void Perception::search(const Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison,
                         base::Range range) {
     for (std::size_t begin = range.begin; begin < range.end; begin += physics::circles_per_block) {
         const base::Range block{begin, std::min(begin + physics::circles_per_block, range.end)};
@@ -102,12 +102,12 @@ void Perception::finish_search(const Searches& searches, View& view, const Items
     }
 }
 
-void Perception::notice_food(const Circles& bodies, const physics::NearPairs& near, const Living& living, Items& food,
-                             base::Executor& executor) {
+void Perception::notice_food(const Circles& bodies, const physics::NearPairs& near, const LivingOrganisms& living,
+                             Items& food, base::Executor& executor) {
     notice(food_, bodies, near, living.food_radius, food, executor);
 }
 
-void Perception::notice_poison(const Circles& bodies, const physics::NearPairs& near, const Living& living,
+void Perception::notice_poison(const Circles& bodies, const physics::NearPairs& near, const LivingOrganisms& living,
                                Items& poison, base::Executor& executor) {
     notice(poison_, bodies, near, living.poison_radius, poison, executor);
 }
@@ -212,8 +212,8 @@ void Perception::notice(View& view, const Circles& bodies, const base::Column<fl
     }
     const float to_x = physics::distance_px(bodies.x[i], view.x[i]),
                 to_y = physics::distance_px(bodies.y[i], view.y[i]);
-    const float known = std::min(to_x * to_x + to_y * to_y, radius[i] * radius[i]);
-    base::fetch_min<true>(view.others[i], distance > 0 && known < distance * distance ? distance : needs_search);
+    const float known_square = std::min(to_x * to_x + to_y * to_y, radius[i] * radius[i]);
+    base::fetch_min<true>(view.others[i], distance > 0 && known_square < distance * distance ? distance : needs_search);
 }
 
 void Perception::reorder(const physics::Reordering& reordering) {
@@ -236,7 +236,8 @@ void Perception::remove(std::size_t body) {
     }
 }
 
-void Perception::add_to(OrganismColumns& columns, const Living& living, const Items& food, const Items& poison) {
+void Perception::add_to(OrganismColumns& columns, const LivingOrganisms& living, const Items& food,
+                        const Items& poison) {
     columns.seen_x = x_.data();
     columns.seen_y = y_.data();
     columns.food = {food_.others.data(), food_.x.data(), food_.y.data(), living.food_radius.data(), food.radius_px()};

@@ -15,7 +15,7 @@
 #include "server/physics/bodies.h"
 #include "server/physics/broad_phase.h"
 #include "server/simulation/items.h"
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 #include "server/simulation/organism_kernels.h"
 
 #include <cstdint>
@@ -27,18 +27,18 @@ namespace evod::simulation {
 class Perception {
   public:
     /// Marks every view as stale.
-    void begin(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison);
+    void begin(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison);
 
     /// Searches for the bodies of [begin, end) whose views are stale. Ranges may be searched in parallel.
-    void search(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+    void search(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison,
                 base::Range range);
 
     /// Updates the views after food (notice_food()) or poison (notice_poison()) has disappeared or reappeared since the
     /// last call. Bodies must not have moved since their views were last updated. The two functions may run in
     /// parallel.
-    void notice_food(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living, Items& food,
-                     base::Executor& executor);
-    void notice_poison(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living,
+    void notice_food(const physics::Circles& bodies, const physics::NearPairs& near, const LivingOrganisms& living,
+                     Items& food, base::Executor& executor);
+    void notice_poison(const physics::Circles& bodies, const physics::NearPairs& near, const LivingOrganisms& living,
                        Items& poison, base::Executor& executor);
 
     void reorder(const physics::Reordering& reordering);
@@ -46,7 +46,7 @@ class Perception {
     void remove(std::size_t body);
 
     /// Sets the members of `columns` that describe views.
-    void add_to(OrganismColumns& columns, const Living& living, const Items& food, const Items& poison);
+    void add_to(OrganismColumns& columns, const LivingOrganisms& living, const Items& food, const Items& poison);
 
   private:
     struct View {

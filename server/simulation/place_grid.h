@@ -24,8 +24,8 @@ struct Place {
     physics::Coordinate x, y;
 };
 
-/// What  the type that describes the size of a body; 4 or 8 bytes. The grid stores one What with each place.
-template <class What>
+/// Size  the type that describes the size of a body; 4 or 8 bytes. The grid stores a Size with each place.
+template <class Size>
 class PlaceGrid {
   public:
     PlaceGrid() = default;
@@ -42,7 +42,7 @@ class PlaceGrid {
 
     bool empty() const { return count_ == 0; }
 
-    void add(Place place, What what) {
+    void add(Place place, Size size) {
         std::size_t cell = std::size_t{rows_.at(place.y)} * columns_.count + columns_.at(place.x);
         while (cells_[cell].bodies[slots - 1].place.x != nowhere) {
             if (cells_[cell].next == 0) {
@@ -54,11 +54,11 @@ class PlaceGrid {
         }
         const auto free = std::find_if(cells_[cell].bodies.begin(), cells_[cell].bodies.end(),
                                        [](const StoredBody& body) { return body.place.x == nowhere; });
-        *free = {place, what};
+        *free = {place, size};
         ++count_;
     }
 
-    /// Returns whether condition(place, what) is true for any body whose centre is at most `reach` units from `place`
+    /// Returns whether condition(place, size) is true for any body whose centre is at most `reach` units from `place`
     /// along both axes. The condition may also be called for bodies further away, and must be false for a body of size
     /// 0 that is far away. The cell of `place` is searched first: in crowds the answer is most often found there.
     template <class Condition>
@@ -95,7 +95,7 @@ class PlaceGrid {
     static constexpr physics::Coordinate nowhere = -(1 << 26);
     struct StoredBody {
         Place place{nowhere, nowhere};
-        What what{};
+        Size size{};
     };
     static constexpr std::size_t slots = (64 - sizeof(std::uint32_t)) / sizeof(StoredBody);
     struct alignas(64) Cell {
@@ -130,7 +130,7 @@ class PlaceGrid {
         do {
             bool found = false;
             for (const StoredBody& body : cells_[cell].bodies) {
-                found |= condition(body.place, body.what);
+                found |= condition(body.place, body.size);
             }
             if (found) {
                 return true;

@@ -117,7 +117,7 @@ bool can_be_given(const WorldState& state, bool awaited) {
     for (std::size_t i = 0; i < state.given_fitness.size(); ++i) {
         const std::vector<double>& given = state.given_fitness[i];
         const auto is_possible = [](double number) { return std::abs(number) <= given_fitness_max; }; // false for NaN
-        if (given.size() > state.islands[i].fate.cause.size() || !std::ranges::all_of(given, is_possible)) {
+        if (given.size() > state.islands[i].life_records.cause.size() || !std::ranges::all_of(given, is_possible)) {
             return false;
         }
     }
@@ -126,7 +126,7 @@ bool can_be_given(const WorldState& state, bool awaited) {
 
 bool is_whole(const WorldState& state) {
     for (std::size_t i = 0; i < state.given_fitness.size(); ++i) {
-        if (state.given_fitness[i].size() != state.islands[i].fate.cause.size()) {
+        if (state.given_fitness[i].size() != state.islands[i].life_records.cause.size()) {
             return false;
         }
     }

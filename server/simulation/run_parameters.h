@@ -6,7 +6,7 @@
 #pragma once
 
 #include "server/base/result.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 #include "server/simulation/changes.h"
 #include "server/simulation/events.h"

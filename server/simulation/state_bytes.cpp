@@ -26,10 +26,10 @@ Refusal refusal(const char* message) {
 /// theirs.
 template <class Island, class Visit>
 void for_each_column(Island& island, Visit&& visit) {
-    visit(island.fate.lived_ticks, std::identity{});
-    visit(island.fate.cause, std::identity{});
-    visit(island.fate.food_eaten, std::identity{});
-    visit(island.fate.poison_eaten, std::identity{});
+    visit(island.life_records.lived_ticks, std::identity{});
+    visit(island.life_records.cause, std::identity{});
+    visit(island.life_records.food_eaten, std::identity{});
+    visit(island.life_records.poison_eaten, std::identity{});
     const auto visit_bodies = [&](auto& bodies) {
         using Body = std::remove_cvref_t<decltype(bodies.front())>;
         visit(bodies, &Body::x);
@@ -126,7 +126,7 @@ std::size_t bytes_of(std::span<const std::uint32_t> given_counts) {
 }
 
 void resize(IslandState& island, const IslandShape& shape) {
-    island.fate.begin_generation(shape.organisms);
+    island.life_records.begin_generation(shape.organisms);
     if (!shape.has_bodies) {
         return;
     }
@@ -166,7 +166,7 @@ Layout layout_of(const WorldState& state) {
     const std::uint32_t gene_count = gene_count_of(state);
     for (const IslandState& island : state.islands) {
         layout.shapes.push_back({.genes = gene_count,
-                                 .organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
+                                 .organisms = static_cast<std::uint32_t>(island.life_records.cause.size()),
                                  .has_bodies = !island.organisms.empty(),
                                  .has_headings = !island.headings.empty(),
                                  .crates = static_cast<std::uint32_t>(island.crates.size()),

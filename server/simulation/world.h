@@ -24,7 +24,7 @@
 #include "server/base/result.h"
 #include "server/base/state_hash.h"
 #include "server/evolution/termination.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 #include "server/simulation/changes.h"
 #include "server/simulation/commands.h"

@@ -34,12 +34,12 @@ IslandShape Island::shape() const {
 
 IslandState Island::state(base::Executor& executor) const {
     IslandState state;
-    state.fate = fate_;
+    state.life_records = life_records_;
     state.counts = counts_;
     if (!has_bodies()) {
         return state;
     }
-    for (std::uint32_t id = bred_count(); id < fate_.cause.size(); ++id) {
+    for (std::uint32_t id = bred_count(); id < life_records_.cause.size(); ++id) {
         const evolution::ConstGenes genes = evolution::column(born_.genes, id);
         state.placed.push_back({.genes = {genes.begin(), genes.end()}, .tick = placed_tick(id)});
     }
@@ -80,11 +80,12 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
                              .message = "island " + std::to_string(index_) + ": impossible state: " + what,
                              .violations = {}};
     };
-    const Fate& fate = state.fate;
+    const LifeRecords& life_records = state.life_records;
     const IslandShape own = shape();
     const std::size_t organisms = own.organisms + state.placed.size();
-    if (fate.cause.size() != organisms || fate.lived_ticks.size() != organisms || fate.food_eaten.size() != organisms ||
-        fate.poison_eaten.size() != organisms || state.organisms.size() != (own.has_bodies ? organisms : 0) ||
+    if (life_records.cause.size() != organisms || life_records.lived_ticks.size() != organisms ||
+        life_records.food_eaten.size() != organisms || life_records.poison_eaten.size() != organisms ||
+        state.organisms.size() != (own.has_bodies ? organisms : 0) ||
         state.headings.size() != (own.has_headings ? organisms : 0) || state.placed.size() > placed_max ||
         (!own.has_bodies && !state.placed.empty())) {
         return wrong("number of organisms");
@@ -111,8 +112,8 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
     std::uint32_t alive = 0, starved = 0, poisoned = 0;
     for (std::size_t id = 0; id < organisms; ++id) {
         const auto which = [&](const char* what) { return wrong(what + (" of organism " + std::to_string(id))); };
-        if (fate.cause[id] == CauseOfDeath::Alive) {
-            if (fate.lived_ticks[id] != 0) {
+        if (life_records.cause[id] == CauseOfDeath::Alive) {
+            if (life_records.lived_ticks[id] != 0) {
                 return which("lived_ticks");
             }
             if (!own.has_bodies) {
@@ -132,12 +133,12 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
             }
             continue;
         }
-        starved += fate.cause[id] == CauseOfDeath::Starved;
-        poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
-        const bool removed = fate.cause[id] == CauseOfDeath::Removed;
-        if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Removed || (fate.lived_ticks[id] == 0 && !removed) ||
-            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{} ||
-            (own.has_headings && state.headings[id] != 0)) {
+        starved += life_records.cause[id] == CauseOfDeath::Starved;
+        poisoned += life_records.cause[id] == CauseOfDeath::Poisoned;
+        const bool removed = life_records.cause[id] == CauseOfDeath::Removed;
+        if (!own.has_bodies || life_records.cause[id] > CauseOfDeath::Removed ||
+            (life_records.lived_ticks[id] == 0 && !removed) || life_records.lived_ticks[id] > tick ||
+            state.organisms[id] != IslandState::Organism{} || (own.has_headings && state.headings[id] != 0)) {
             return which("death");
         }
     }
@@ -175,22 +176,22 @@ bool differ_only_by_commands(const IslandState& begun, const IslandState& state)
     };
     for (std::size_t id = 0; id < begun.organisms.size(); ++id) {
         const bool has_turned = !begun.headings.empty() && state.headings[id] != begun.headings[id];
-        if (state.fate.cause[id] != CauseOfDeath::Removed &&
+        if (state.life_records.cause[id] != CauseOfDeath::Removed &&
             (state.organisms[id] != begun.organisms[id] || has_turned)) {
             return false;
         }
     }
     const auto has_eaten = [](std::uint32_t count) { return count > 0; };
     return state.counts == begun.counts && state.crates == begun.crates && are_kept(begun.food, state.food) &&
-           are_kept(begun.poison, state.poison) && std::ranges::none_of(state.fate.food_eaten, has_eaten) &&
-           std::ranges::none_of(state.fate.poison_eaten, has_eaten);
+           are_kept(begun.poison, state.poison) && std::ranges::none_of(state.life_records.food_eaten, has_eaten) &&
+           std::ranges::none_of(state.life_records.poison_eaten, has_eaten);
 }
 
 void Island::restore(const IslandState& state, std::uint32_t tick, const parameters::Parameters& parameters,
                      base::Executor& executor) {
     counts_ = state.counts;
     if (!has_bodies()) {
-        fate_ = state.fate;
+        life_records_ = state.life_records;
         return;
     }
     // Before the first tick, hash_ covers only the chromosomes and what commands have changed.
@@ -204,7 +205,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
         placed.push_back({{}, organism.genes, organism.tick});
     }
     append(placed, parameters);
-    fate_ = state.fate;
+    life_records_ = state.life_records;
     for (std::uint32_t i = 0; i < crate_count_; ++i) {
         boxes_.x[i] = state.crates[i].x;
         boxes_.y[i] = state.crates[i].y;
@@ -218,7 +219,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
     eaten_hash_ = {};
     for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
         eaten_hash_ += hash_of_eaten(id);
-        if (fate_.cause[id] != CauseOfDeath::Alive) {
+        if (life_records_.cause[id] != CauseOfDeath::Alive) {
             gone.push_back(id);
             continue;
         }
@@ -302,8 +303,10 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         if (tick == 0 && !differ_only_by_commands(island(i).state(executor), state.islands[i])) {
             return wrong("beginning of the generation");
         }
-        alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
-        removed += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Removed));
+        alive +=
+            static_cast<std::uint64_t>(std::ranges::count(state.islands[i].life_records.cause, CauseOfDeath::Alive));
+        removed +=
+            static_cast<std::uint64_t>(std::ranges::count(state.islands[i].life_records.cause, CauseOfDeath::Removed));
     }
     // If a command has removed the last living organism after this tick, the generation ends with the next tick.
     const bool removed_last =

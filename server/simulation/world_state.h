@@ -9,10 +9,10 @@
 #pragma once
 
 #include "server/base/column.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/items.h"
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 #include "server/simulation/statistics.h"
 
 #include <array>
@@ -69,7 +69,7 @@ struct IslandState {
         std::uint32_t tick; // it was placed after this tick of the generation
         friend bool operator==(const Placed&, const Placed&) = default;
     };
-    Fate fate; // of the organisms that were born, then of those that were placed
+    LifeRecords life_records; // of the organisms that were born, then of those that were placed
     IslandCounts counts;
     std::vector<Placed> placed;                       // in order of id
     std::uint32_t placed_food = 0, placed_poison = 0; // numbers of placed items; they come last in food and poison

@@ -1,4 +1,4 @@
-"""A real evod and a client of it, for the programs beside it, with one request at a time; and how they print
+"""A real evod and a client of it, for the other programs of this folder, with one request at a time; and how they print
 figures."""
 import json
 import os

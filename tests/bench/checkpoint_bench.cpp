@@ -1,4 +1,4 @@
-// What a checkpoint costs: the ticks of a world while its run is kept, the longest with a checkpoint beside the others,
+// What a checkpoint costs: the ticks of a world while its run is kept, the longest with a checkpoint and the others,
 // and what packing one takes. As a server does it: ticks and copying on this thread and its workers, the rest on the
 // storage thread.
 #include "server/base/inline_executor.h"

@@ -1,4 +1,4 @@
-"""Generations per second of World.evaluate() with a NumPy function, beside the same world that computes its fitness
+"""Generations per second of World.evaluate() with a NumPy function, and of the same world that computes its fitness
 itself.
 
     evaluate_cost.py EVOD PACKAGE [--rounds N] [--organisms N] [--generations N] [--json]

@@ -117,7 +117,7 @@ def percentile(values, percent):
 
 
 def measure_latency(folder):
-    """Milliseconds to the answer of a command beside a full stream; to the first snapshot of a late subscriber."""
+    """Milliseconds to the answer of a command during a full stream; to the first snapshot of a late subscriber."""
     figures = {}
     for name, arguments in (("kept_nothing", ["--keep-nothing"]), ("durable", ["--data", folder])):
         with serve(*arguments) as server:

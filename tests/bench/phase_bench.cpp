@@ -95,7 +95,7 @@ class OpenIsland {
         , key_{start.seed(), base::Purpose::Behaviour, start.index(), 1}
         , alive_count_{start.alive_count()} {
         body_of_.resize(bodies_.size());
-        fate_.begin_generation(bodies_.size());
+        life_records_.begin_generation(bodies_.size());
         perception_.begin(bodies_, living_, food_, poison_);
         stepper_.near().invalidate();
     }
@@ -206,14 +206,14 @@ class OpenIsland {
                         touch.body,
                         std::min(living_.health[touch.body] + static_cast<float>(parameters_.food_health), cap));
                     food_.add_to_hash(food_.set_due(touch.item, tick_));
-                    ++fate_.food_eaten[touch.id];
+                    ++life_records_.food_eaten[touch.id];
                 }
             }
             for (const Touch& touch : poison_feeding_.touches(block)) {
                 if (touch.gets_it) {
                     change_health(touch.body, living_.health[touch.body] - static_cast<float>(parameters_.poison_harm));
                     poison_.add_to_hash(poison_.set_due(touch.item, tick_));
-                    ++fate_.poison_eaten[touch.id];
+                    ++life_records_.poison_eaten[touch.id];
                 }
             }
             for (const Touch& touch : poison_feeding_.touches(block)) {
@@ -253,8 +253,8 @@ class OpenIsland {
             return;
         }
         const std::uint32_t id = bodies_.id[body];
-        fate_.cause[id] = cause;
-        fate_.lived_ticks[id] = tick_;
+        life_records_.cause[id] = cause;
+        life_records_.lived_ticks[id] = tick_;
         hash_ -= hash_of_organism(bodies_, living_, body);
         body_of_[id] = ~0u;
         bodies_.remove(body);
@@ -270,13 +270,13 @@ class OpenIsland {
     base::StateHash born_hash_, hash_;
     physics::Circles bodies_;
     physics::Boxes boxes_;
-    Living living_;
+    LivingOrganisms living_;
     Items food_, poison_;
     base::RandomKey key_;
     Perception perception_;
     physics::Stepper stepper_;
     Feeding food_feeding_, poison_feeding_;
-    Fate fate_;
+    LifeRecords life_records_;
     base::Column<std::uint32_t> body_of_, spare_column_;
     std::vector<std::vector<std::uint32_t>> dying_;
     std::uint32_t alive_count_, tick_ = 0, renewals_ = 0;

@@ -3,8 +3,8 @@
 // With OpenGL in software, the driver takes most of the time. With driver:0 the calls that upload and draw shapes do
 // nothing: the linker redirects them to this file. Calls of Dear ImGui are not redirected, so the rest is the viewer's
 // own time and a little more.
-#include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/screen.h"
+#include "client/viewer/view/window_renderer.h"
 
 #include <GL/gl.h>
 #include <GL/glext.h>
@@ -94,31 +94,30 @@ void draw_frame(benchmark::State& state) {
     Options options;
     options.connection = no_server();
     const Look look{state.range(1) != 0 ? Skin::Vivid : Skin::Classic};
-    Panes panes{wanted_of(options), {}, default_options(look)};
-    Pane& pane = panes.focused();
+    WorldView view{wanted_of(options), default_options(look)};
     auto now = core::SnapshotInterpolator::Clock::now();
     std::uint64_t tick = 2;
     const std::array snapshots{snapshot_at(organism_count, 0), snapshot_at(organism_count, tick)};
-    pane.world.feed.view().add(snapshots[0], now);
-    pane.world.feed.view().add(snapshots[1], now += snapshot_interval);
+    view.world.feed.view().add(snapshots[0], now);
+    view.world.feed.view().add(snapshots[1], now += snapshot_interval);
     const auto arrived = now;
     WindowRenderer::Frame frame{.width_pixels = 1280, .height_pixels = 720, .now = now, .interpolate = true};
-    renderer.draw(panes, frame);
-    pane.camera().zoom_at(pane.camera().viewport().centre(), static_cast<double>(state.range(2)));
+    renderer.draw(view, frame);
+    view.camera().zoom_at(view.camera().viewport().centre(), static_cast<double>(state.range(2)));
     frame.pointed_at = Point{640, 360};
-    renderer.draw(panes, frame);
+    renderer.draw(view, frame);
     driver_works = state.range(4) != 0;
     for (auto _ : state) {
         if (new_snapshot) { // the older of the two is reused as the next one
             const auto& next = snapshots[tick / 2 % 2 == 0 ? 1 : 0];
             next->about.set_tick(tick += 2);
             next->about.set_simulated_s(static_cast<double>(tick) / 60);
-            pane.world.feed.view().add(next, frame.now += snapshot_interval);
+            view.world.feed.view().add(next, frame.now += snapshot_interval);
         } else {
             frame.now += std::chrono::milliseconds{3}; // interpolates from one snapshot to the next, repeatedly
             frame.now = frame.now > arrived + snapshot_interval ? arrived : frame.now;
         }
-        renderer.draw(panes, frame);
+        renderer.draw(view, frame);
     }
     driver_works = true;
 }

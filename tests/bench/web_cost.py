@@ -1,27 +1,18 @@
-"""Measures what the page costs a browser, and what viewers in browsers cost the server, with a real evod.
+"""Measures what the page costs a browser, with a real evod: time to the first snapshot, frame rate, memory.
 
-    web_cost.py EVOD MESSAGES [--organisms N ...] [--seconds S] [--viewers N] [--json]
+    web_cost.py EVOD MESSAGES [--organisms N ...] [--seconds S] [--json]
 
 For each number of organisms a headless Chromium without a GPU (ANGLE's SwiftShader) shows a world of the benchmark
 world's density at real time. Decoding and drawing are those of the last 200 snapshots and frames in the worker; `first`
 is the time from the navigation until the first snapshot is drawn, of a new browser and of a reload; the heaps of page
 and worker are read after a garbage collection, when the page has settled and after the seconds of measurement.
-
-With --viewers N instead: N clients like browsers (WebSockets, masked frames, at most 2 unacknowledged snapshots, 30 a
-second, deltas without compression) watch a world of 50 organisms each at real time. The figures are the processor time
-of the server's threads, and how much slower than real time the worlds ran.
 """
 import argparse
-import contextlib
 import http.client
 import json
 import pathlib
-import re
-import selectors
 import socket
-import struct
 import sys
-import threading
 import time
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -29,7 +20,6 @@ parser.add_argument("evod", help="the program")
 parser.add_argument("messages", help="folder of the Python message classes: build/release/tests/system")
 parser.add_argument("--organisms", type=int, nargs="+", default=[50, 10_000, 100_000])
 parser.add_argument("--seconds", type=float, default=20, help="of each measurement")
-parser.add_argument("--viewers", type=int, help="number of clients; no browser is needed")
 parser.add_argument("--json", action="store_true", help="print the figures as JSON")
 options = parser.parse_args()
 system_tests = pathlib.Path(__file__).resolve().parents[1] / "system"
@@ -37,7 +27,7 @@ sys.path[:0] = [options.messages, str(system_tests), str(system_tests / "web")]
 
 from bench_client import Server, assignments, benchmark_world, print_figures  # noqa: E402
 import websocket_client  # noqa: E402
-from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2  # noqa: E402
+from evod.v1 import commands_pb2 as c  # noqa: E402
 
 
 def serve():
@@ -51,10 +41,6 @@ def create(server, name, organisms):
     parameters = {"population_size": organisms} if organisms == 50 else benchmark_world(organisms)
     server.control.call(create_world=c.CreateWorld(name=name, seed=1, parameters=assignments(parameters)))
     server.control.call(run=c.Run(world=name))
-
-
-# ---- the browser
-# -------------------------------------------------------------------------------------------------------
 
 
 class Heaps:
@@ -135,107 +121,4 @@ def measure_page(organisms):
             browser.close()
 
 
-# ---- many viewers
-# ------------------------------------------------------------------------------------------------------
-
-
-class Viewer:
-    """A client like the worker of the page: it acknowledges each snapshot."""
-
-    def __init__(self, port, world):
-        self.socket, self.received, self.snapshots = websocket_client.WebSocket.connected(port), bytearray(), 0
-        self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="benchmark")))
-        self.send(session_pb2.ClientMessage(request=c.Request(
-            request_id=1, client_key="benchmark", subscribe_snapshots=c.SubscribeSnapshots(
-                world=world, rate_hz=30, codec=stream_pb2.CODEC_DELTA, unacknowledged_max=2, headings=True))))
-
-    def fileno(self):
-        return self.socket.fileno()
-
-    def send(self, message):
-        body = message.SerializeToString()
-        self.socket.sendall(b"EV\x01\x01" + struct.pack("<I", len(body)) + body)
-
-    def step(self):
-        """Takes what has arrived."""
-        data = self.socket.recv(1 << 20)
-        if not data:
-            raise EOFError
-        self.received += data
-        while len(self.received) >= 8:
-            length = struct.unpack("<I", self.received[4:8])[0]
-            if len(self.received) < 8 + length:
-                break
-            channel, body = self.received[3], bytes(self.received[8:8 + length])
-            del self.received[:8 + length]
-            if channel == 2:
-                frame = stream_pb2.SnapshotFrame.FromString(body)
-                self.snapshots += 1
-                self.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
-                    subscription_id=frame.subscription_id, island=frame.island, sequence=frame.sequence)))
-
-
-class Readers(threading.Thread):
-    """Reads what all viewers receive, until stop()."""
-
-    def __init__(self, viewers):
-        super().__init__(daemon=True)
-        self.viewers, self.stopped, self.selector = viewers, False, selectors.DefaultSelector()
-        for viewer in viewers:
-            self.selector.register(viewer, selectors.EVENT_READ, viewer)
-        self.start()
-
-    def run(self):
-        with contextlib.suppress(OSError, EOFError):
-            while not self.stopped:
-                for key, _ in self.selector.select(0.2):
-                    key.data.step()
-                    while key.data.socket.content or key.data.socket.decode():
-                        key.data.step()
-
-    def stop(self):
-        self.stopped = True
-        self.join()
-
-
-def ticks(server):
-    return {world.name: world.tick for world in server.control.call(list_worlds=c.ListWorlds()).worlds.worlds}
-
-
-def threads_s(server):
-    """Processor time of each kind of thread, as /metrics reports it."""
-    connection = http.client.HTTPConnection("127.0.0.1", server.page_port)
-    connection.request("GET", "/metrics")
-    text = connection.getresponse().read().decode()
-    found = re.findall(r'^evod_thread_cpu_seconds_total\{thread="(\w+)"\} (\S+)', text, re.M)
-    return {name: float(seconds) for name, seconds in found}
-
-
-def measure_viewers(count):
-    figures = {}
-    with serve() as server:
-        for i in range(count):
-            create(server, f"w{i}", 50)
-        for name, watched in (("without viewers", 0), (f"{count} viewers", count)):
-            viewers = [Viewer(server.page_port, f"w{i}") for i in range(watched)]
-            readers = Readers(viewers)
-            time.sleep(2)
-            seen = sum(viewer.snapshots for viewer in viewers)
-            used, first, began = threads_s(server), ticks(server), time.monotonic()
-            time.sleep(options.seconds)
-            last, used_after, passed_s = ticks(server), threads_s(server), time.monotonic() - began
-            shares = [(last[f"w{i}"] - first[f"w{i}"]) / (60 * passed_s) for i in range(count)]
-            slowed = sum(world.slowed for world in server.control.call(list_worlds=c.ListWorlds()).worlds.worlds)
-            snapshots = sum(viewer.snapshots for viewer in viewers) - seen
-            readers.stop()
-            figures[name] = {"real_time_share": {"least": min(shares), "mean": sum(shares) / count},
-                             "slowed_worlds": slowed,
-                             "snapshots_per_s": snapshots / passed_s / max(watched, 1),
-                             "cpu_share": {thread: (used_after[thread] - used[thread]) / passed_s for thread in used}}
-            for viewer in viewers:
-                viewer.socket.close()
-    return figures
-
-
-print_figures(measure_viewers(options.viewers) if options.viewers
-              else {f"{organisms} organisms": measure_page(organisms) for organisms in options.organisms}, options.json)
+print_figures({f"{organisms} organisms": measure_page(organisms) for organisms in options.organisms}, options.json)

@@ -1,8 +1,8 @@
 // Equal (parameters, seed, commands) give equal bits after every tick, on any number of threads and with any observers.
 
 #include "server/base/inline_executor.h"
-#include "tests/determinism/scenarios.h"
 #include "server/jobs/thread_pool.h"
+#include "tests/determinism/scenarios.h"
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ void change_entities(simulation::Laboratory& laboratory, std::uint64_t tick) {
         organism.organisms.push_back({px(tick * 37 + i * 1013), px(tick * 91 + i * 211),
                                       std::vector<float>(evolution::body_gene_count, 90.0f + static_cast<float>(i))});
         (void)laboratory.apply(organism); // refused if there is no room
-        const auto id = static_cast<std::uint32_t>((tick * 29 + i * 7) % island.fate().cause.size());
+        const auto id = static_cast<std::uint32_t>((tick * 29 + i * 7) % island.life_records().cause.size());
         if (island.body_of(id)) {
             remove.organisms.push_back(id);
         }

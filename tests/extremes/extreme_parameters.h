@@ -1,7 +1,7 @@
 // Extreme parameters: valid sets of parameters, many of which are at an edge of what is permitted.
 #pragma once
 
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "tests/histories/draws.h"
 
 namespace evod::extremes {

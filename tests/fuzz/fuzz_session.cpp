@@ -8,7 +8,7 @@
 // for what follows.
 #include "server/log/log.h"
 #include "server/network/session.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "tests/fuzz/script.h"
 #include "tests/fuzz/valid_snapshot.h"
 #include "tests/fuzz/watched_server.h"

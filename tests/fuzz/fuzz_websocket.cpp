@@ -150,7 +150,7 @@ class Play {
     explicit Play(std::uint8_t how) : how_{how} {
         host_.clock = &clock_;
         host_.limits = network::limits_message({});
-        host_.admit = [](const std::string&, const std::string&) { return access::Visitor{}; };
+        host_.admit = [](const std::string&, const std::string&) { return access::AuthenticatedUser{}; };
         host_.handle = [](Session& session, const v1::Request& request) {
             session.send_unasked(protocol::refusing(
                 request.request_id(), base::refusal(base::RefusalCode::Unimplemented, "there is no simulation")));

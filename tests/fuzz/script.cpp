@@ -1,6 +1,6 @@
 #include "tests/fuzz/script.h"
 
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include <google/protobuf/descriptor.h>
 

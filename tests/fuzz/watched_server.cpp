@@ -91,9 +91,9 @@ bool is_run_control(const simulation::Command& command) {
 
 } // namespace
 
-base::Result<access::Visitor> admit(const std::string& token) {
+base::Result<access::AuthenticatedUser> admit(const std::string& token) {
     if (const auto role = access::role_named(token)) {
-        return access::Visitor{.name = token, .role = *role};
+        return access::AuthenticatedUser{.name = token, .role = *role};
     }
     return base::refusal(base::RefusalCode::Unauthenticated, "the token is not known");
 }

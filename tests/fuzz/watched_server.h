@@ -79,6 +79,6 @@ class WatchedServer {
 };
 
 /// Authenticates the tokens "viewer", "controller" and "admin".
-base::Result<access::Visitor> admit(const std::string& token);
+base::Result<access::AuthenticatedUser> admit(const std::string& token);
 
 } // namespace evod::fuzz

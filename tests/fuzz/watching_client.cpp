@@ -1,5 +1,6 @@
 #include "tests/fuzz/watching_client.h"
 
+#include "server/access/authorization.h"
 #include "server/network/limits.h"
 #include "server/protocol/request_rules.h"
 #include "tests/fuzz/valid_snapshot.h"
@@ -89,9 +90,9 @@ void WatchingClient::said(const codec::Frame& frame) {
         if (!greeted_) {
             refused_since_ = clock().now();
         } else {
-            const access::Visitor visitor = *admit(message->hello().token());
-            role_ = visitor.role;
-            user_ = visitor.name;
+            const access::AuthenticatedUser user = *admit(message->hello().token());
+            role_ = user.role;
+            user_ = user.name;
             said_.set_limits(codec::server_limits);
         }
         return;

@@ -215,7 +215,7 @@ v1::Request RandomCommands::remove(const Entry& entry) {
     if (draws_.chance(0.1)) {
         remove.set_generation(entry.world.moment().generation - draws_.below(2));
     }
-    const auto& cause = entry.world.island(remove.island()).fate().cause;
+    const auto& cause = entry.world.island(remove.island()).life_records().cause;
     const bool all = draws_.chance(0.4);
     for (std::uint32_t id = 0; id < cause.size(); ++id) {
         if (cause[id] == simulation::CauseOfDeath::Alive && (all || draws_.chance(0.2))) {

@@ -1,7 +1,7 @@
 // Random values of parameters: within their ranges, and such that a world stays small and most changes are accepted.
 #pragma once
 
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 #include "tests/histories/draws.h"
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-"""Connecting: addresses, missing servers, servers that are no evod, and the life of private servers."""
+"""Connecting: addresses, missing servers, servers that are not evod, and the life of private servers."""
 import asyncio
 import socket
 import subprocess

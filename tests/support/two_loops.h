@@ -2,7 +2,7 @@
 // network thread does between them.
 #pragma once
 
-#include "server/runtime/fork_check.h"
+#include "server/runtime/fork.h"
 #include "server/runtime/simulations.h"
 #include "server/simulation/world_name.h"
 

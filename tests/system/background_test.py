@@ -43,17 +43,6 @@ class Background(access.Access, export_test.Runs):
         bred = ada.call(get_breeding=c.GetBreeding(world="w", generation=1)).breeding
         self.assertEqual(bred.generation, 1)
 
-    def test_one_user_leaves_places_and_time_to_others(self):
-        eves = self.take_all()
-        codes = [eve.response(eve.export).status.code for eve in eves]
-        self.assertEqual(sorted(codes), 4 * [plain.OK] + 12 * [plain.EXHAUSTED], "a user has half of the places")
-        ada = self.come_as("ada")
-        self.is_served(ada)
-        # Each GetBreeding of eve is answered, too, or refused because too many of hers wait.
-        for eve in eves[:2]:
-            for asked in eve.asked:
-                self.assertIn(eve.response(asked).status.code, (plain.OK, plain.EXHAUSTED))
-
     def test_places_are_free_when_the_sessions_have_ended(self):
         for eve in self.take_all():
             eve.socket.close()

@@ -278,7 +278,7 @@ class Population(Folder):
         other = self.run_with("0,0,100,110,120,130,140,150\n0,1,101.5,90,80,70.25,60,51\n")
         self.assertNotEqual(state(done.stdout), state(other.stdout))
 
-    def test_what_is_wrong_is_named(self):
+    def test_errors_of_a_population_file_are_named(self):
         good = "0,0,100,110,120,130,140,150\n"
         for rows, word in {
             good: "population[0]: got 1 organism, allowed 2 organisms (population_size)",

@@ -50,7 +50,7 @@ class DamagedWorld(past.Case):
         self.assertEqual(status.reason, c.REASON_WORLD_DAMAGED, request)
         self.assertIn(SAID, status.message)
 
-    def test_the_others_run_and_it_keeps_its_name(self):
+    def test_other_worlds_run_and_its_name_stays_taken(self):
         self.recorded("a", "b", "default")
         server, client = self.serve("--start")
         plain.until(lambda: client.world("default").tick > 0, "--start")
@@ -96,7 +96,7 @@ class DamagedWorld(past.Case):
         server, client = self.serve()
         self.assertEqual((self.damaged(client), client.world("a").tick, client.world("b").tick), ({}, 0, 300))
 
-    def test_it_may_be_the_only_world(self):
+    def test_a_server_starts_with_only_a_damaged_world(self):
         self.recorded("a")
         server, client = self.serve("--start", "--http-port", "0")
         self.assertIn('--speed and --start have no effect: world "a" is damaged', server.output())

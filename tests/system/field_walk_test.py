@@ -2,6 +2,7 @@
 that programs get wrong. Each is done, or refused with the field that is at fault; what is refused has changed nothing,
 and afterwards the world is equal to an untouched one. EVOD and EVOCTL name the programs, MESSAGES the folder of the
 message classes."""
+import math
 import pathlib
 import re
 import struct
@@ -266,7 +267,8 @@ class Walk(access.Access):
                                 if 0 <= x < 2**32 and not one.min <= x <= one.max]
                 elif one.kind == kinds.PARAMETER_KIND_REAL:
                     inside = [dict(real=one.min), dict(real=one.max)]
-                    outside += [dict(real=x) for x in (one.min - 1, one.max + 1, -1e300, 2.0**63)
+                    outside += [dict(real=x) for x in (math.nextafter(one.min, -math.inf),
+                                                      math.nextafter(one.max, math.inf), -1e300, 2.0**63)
                                 if not one.min <= x <= one.max]
                 elif one.kind == kinds.PARAMETER_KIND_CHOICE:
                     inside = [dict(choice=x) for x in one.choices]

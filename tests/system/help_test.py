@@ -63,7 +63,7 @@ class Generated(unittest.TestCase):
     def setUp(self):
         self.programs = {os.path.basename(program): list(tables(program)) for program in PROGRAMS}
 
-    def test_help_lists_what_is_known_to_exist(self):
+    def test_help_lists_every_command_and_option(self):
         evod, evoctl = (dict((words, (options, commands)) for words, options, commands in listed)
                         for listed in self.programs.values())
         self.assertLessEqual({"--help", "--version", "--port", "--tls-cert", "--data", "--seed", "--log-level"},

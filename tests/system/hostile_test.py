@@ -1,4 +1,4 @@
-"""Hostile and failing clients beside honest ones: the run stays the same, others are served, and memory is released.
+"""Hostile and failing clients with honest ones: the run stays the same, others are served, and memory is released.
 
 EVOD names the program, MESSAGES the folder of the message classes; PAUSE_S is for how long a reader pauses, in whole
 seconds, and where SANITIZED is set memory is not judged: a sanitizer keeps what has been freed. Each test lets
@@ -61,7 +61,7 @@ class Attacked(unittest.TestCase):
         return stepped
 
     def attacked(self, kind, number, at_least_s=3.0, memory_back_bytes=MEMORY_BACK_BYTES, enough=lambda counts: True):
-        """The state of the attackers after honest work beside them."""
+        """The state of the attackers after honest work during the attacks."""
         with plain.Client(self.server) as control, plain.Client(self.server) as viewer:
             self.begin_world(control)
             viewer.decoder = Decoder(plain.zstd_content)

@@ -335,7 +335,7 @@ class Health(Case):
             self.wait(server, lambda m: m("evod_journal_waiting_bytes") == 0 and
                       m("evod_storage_state", state="keeps_up") == 1, "all is written")
 
-    def test_it_is_ill_while_its_simulation_does_not_answer(self):
+    def test_health_fails_while_the_simulation_is_stuck(self):
         server = self.serve()
         waiting.quicker_than(SIMULATION_S, lambda _: self.assertEqual(self.get(server, "/healthz").text, "ok\n"))
         threads = {pathlib.Path(task, "comm").read_text().strip(): int(task.name)

@@ -278,7 +278,7 @@ class Commands(Case):
         self.verify(self.data("of 4"))
 
 
-class Beside(Case):
+class Compared(Case):
     """The same world in a server of three processes and in one of one process."""
 
     def setUp(self):
@@ -307,7 +307,7 @@ class Beside(Case):
             self.both(remove=c.Remove(world="w", island=island, food=placed[0].food[:1], organisms=[3]))
 
 
-class Snapshots(Beside):
+class Snapshots(Compared):
     TICKS = (0, 10, 30, 31, 60)
 
     def snapshots(self, client, islands):
@@ -381,7 +381,7 @@ class Snapshots(Beside):
         self.assertGreater(len(seen), 10)
 
 
-class Queries(Beside):
+class Queries(Compared):
     def ask_everything(self):
         self.both(get_statistics=c.GetStatistics(world="w"))
         self.both(get_history=c.GetHistory(world="w"))

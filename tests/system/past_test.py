@@ -306,7 +306,7 @@ class Fork(Case):
         first = self.live.call(**request)
         self.assertEqual(self.live.call(**request), first)
 
-    def test_refusals_name_what_is_wrong(self):
+    def test_refusals_of_forks_name_the_field(self):
         refused = lambda code, **fields: self.live.call(code, fork_world=c.ForkWorld(**fields)).status
         self.assertEqual(refused(c.CODE_INVALID_ARGUMENT, world="w", name="../f").violations[0].field,
                          "fork_world.name")

@@ -30,7 +30,7 @@ class Placing(access.Access):
         client.run_to(50, "default")
         return server, client
 
-    def test_a_killed_server_continues_with_them(self):
+    def test_a_killed_server_keeps_placed_items(self):
         server, client = self.begin()
         before = client.world("default").state_hash
         placed = client.call(place=c.Place(world="default", items=[food(30, 40), food(50, 40)])).placed

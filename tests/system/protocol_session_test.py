@@ -84,10 +84,6 @@ class Handshake(WithServer):
                 self.assertEqual(client.response(id).status.code, 0)
             self.refused(client, INVALID, "'EV'")
 
-    def test_a_long_first_frame_is_refused_by_its_header_alone(self):
-        self.refused(self.raw(b"EV\x01\x01" + struct.pack("<I", 4097)), INVALID, "4096")
-        self.refused(self.raw(b"EV\x01\x01" + struct.pack("<I", 0xffffffff)), INVALID, "4096")
-
     def test_a_request_before_the_hello_is_refused(self):
         client = self.enterContext(Client(self.server, hello=False))
         client.ask(list_worlds=c.ListWorlds())
@@ -142,34 +138,6 @@ class Handshake(WithServer):
         response = self.client.control().response
         self.assertEqual((response.request_id, response.status.code), (0, PRECONDITION))
         self.client.call(list_worlds=c.ListWorlds())
-
-    def test_a_silent_connection_is_closed_in_time(self):
-        began = time.monotonic()
-        client = self.enterContext(Client(self.server, hello=False))
-        self.refused(client, PRECONDITION, "no Hello")
-        self.assertGreater(time.monotonic() - began, self.client.welcome.limits.hello_timeout_s - 0.5)
-
-    def test_one_session_too_many_gets_a_goodbye(self):
-        limit = self.client.welcome.limits.sessions_max
-        with contextlib.ExitStack() as stack:
-            sessions = [stack.enter_context(Client(self.server)) for _ in range(limit // 2 - 1)]
-            neighbour = stack.enter_context(Client(self.server, hello=False))
-            neighbour.hello()
-            self.refused(neighbour, EXHAUSTED, "from this address")
-            sessions[0].call(list_worlds=c.ListWorlds())
-            sessions[0].socket.close()
-            until(lambda: self.admitted(), "a place is free again")
-
-    def test_an_incomplete_frame_ends_its_session(self):
-        client, patient = self.enterContext(Client(self.server)), self.enterContext(Client(self.server))
-        began = time.monotonic()
-        client.socket.sendall(b"EV\x01\x01\x08\x00\x00\x00")  # a header without its body
-        message = client.control()
-        self.assertEqual(message.goodbye.status.code, PRECONDITION)
-        self.assertIn("did not arrive", message.goodbye.status.message)
-        client.assert_closed()
-        self.assertGreater(time.monotonic() - began, self.client.welcome.limits.frame_timeout_s - 0.5)
-        patient.call(list_worlds=c.ListWorlds())  # an idle session may stay
 
     def test_a_dense_sequence_of_frames_is_not_late(self):
         body = session_pb2.ClientMessage(request=c.Request(request_id=1,
@@ -255,13 +223,6 @@ class Requests(WithServer):
         self.client.call(list_worlds=c.ListWorlds())
         self.assertNotIn("libprotobuf", self.server.output())  # otherwise clients could fill the log
 
-    def test_a_frame_too_long_gets_a_goodbye(self):
-        self.client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", (1 << 20) + 1))
-        status = self.client.goodbye()
-        self.assertEqual(status.code, INVALID)
-        self.assertIn("1048576", status.message)
-        self.client.assert_closed()
-
     def test_a_stream_out_of_step_gets_a_goodbye(self):
         self.client.send(session_pb2.ClientMessage(request=c.Request(request_id=1, list_worlds=c.ListWorlds())))
         self.client.socket.sendall(b"xx" * 100)
@@ -278,7 +239,7 @@ class Requests(WithServer):
                     client.socket.shutdown(socket.SHUT_WR)
                 client.assert_closed()
 
-    def test_half_a_frame_and_gone(self):
+    def test_a_client_may_end_within_a_frame(self):
         for cut in (1, 5, 8, 9):
             with Client(self.server) as client:
                 client.socket.sendall((b"EV\x01\x01" + struct.pack("<I", 100) + b"x" * 50)[:cut])
@@ -293,13 +254,6 @@ class Requests(WithServer):
             self.assertEqual([v.field for v in status.violations], ["client_key"])
         self.client.call(client_key="", list_worlds=c.ListWorlds())
 
-    def test_every_request_sent_ahead_is_answered_once(self):
-        ids = [self.client.ask(list_worlds=c.ListWorlds()) for _ in range(500)]
-        codes = [self.client.response(i).status.code for i in ids]
-        self.assertEqual(set(codes) - {OK, EXHAUSTED}, set())
-        self.assertGreaterEqual(codes.count(OK), self.client.welcome.limits.requests_in_flight_max)
-        self.client.call(list_worlds=c.ListWorlds())
-
     def test_requests_are_answered_in_order(self):
         ids = [self.client.ask(run_until_tick=c.RunUntilTick(tick=0)) for _ in range(20)]
         order = []
@@ -313,20 +267,6 @@ class Requests(WithServer):
         for i in ids:
             self.assertEqual(self.client.response(i).status.code, OK)
         self.client.assert_closed()
-
-    @unittest.skipIf(os.environ.get("SANITIZED"), "such a server is too slow to have as many answers waiting in time")
-    def test_a_client_that_reads_no_answers_is_closed(self):
-        one = session_pb2.ClientMessage(request=c.Request(request_id=1, describe=c.Describe())).SerializeToString()
-        frame = b"EV\x01\x01" + struct.pack("<I", len(one)) + one
-
-        def flood(_):
-            logged = len(self.server.output())
-            with Client(self.server) as silent, self.assertRaises((BrokenPipeError, ConnectionResetError)):
-                while True:
-                    silent.socket.sendall(frame * 1000)
-            until(lambda: " closed: " in self.server.output()[logged:], "it is logged")
-            self.assertIn("does not read its answers", self.server.output()[logged:])
-        waiting.quicker_than(self.client.welcome.limits.stalled_timeout_s, flood)
 
     def test_describe_has_messages_parameters_and_limits(self):
         description = self.client.call(describe=c.Describe()).description
@@ -381,13 +321,13 @@ class StartAndEnd(unittest.TestCase):
         self.addCleanup(server.end)
         return server
 
-    def test_a_taken_port_is_said_to_be_taken(self):
+    def test_a_port_in_use_is_named(self):
         server = self.serve()
         message = self.start_refused("--port", str(server.port))
         self.assertIn("port is in use", message)
         self.assertIn("--port", message)
 
-    def test_a_bad_address_is_said_to_be_one(self):
+    def test_an_invalid_bind_address_is_refused(self):
         self.assertIn("--bind", self.start_refused("--port", "0", "--bind", "localhorst"))
 
     def test_a_bad_experiment_names_line_and_field(self):
@@ -396,7 +336,7 @@ class StartAndEnd(unittest.TestCase):
         self.assertIn("mutation_chance (line 3)", message)
         self.assertIn("line 2", self.start_refused("--port", "0", "--experiment", self.file('{\n  "food_count": ,\n}')))
 
-    def test_an_experiment_that_cannot_be_read_is_said_so(self):
+    def test_an_unreadable_experiment_gives_its_reason(self):
         self.assertIn("No such file", self.start_refused("--port", "0", "--experiment", "/nowhere/at_all.json"))
         self.assertIn("folder", self.start_refused("--port", "0", "--experiment", "/"))
 
@@ -427,7 +367,7 @@ class StartAndEnd(unittest.TestCase):
                 hashes.add(client.run_to(60).state_hash)
         self.assertEqual(len(hashes), 1)
 
-    def test_either_signal_says_goodbye_and_ends_well(self):
+    def test_sigterm_and_sigint_send_a_goodbye(self):
         for how in (signal.SIGTERM, signal.SIGINT):
             def end(lap):
                 server = Server("--start", "--speed", "max")
@@ -459,7 +399,7 @@ class StartAndEnd(unittest.TestCase):
                 client.call(list_worlds=c.ListWorlds())
         self.assertIsNone(process.poll())
 
-    def test_signals_in_a_row_do_no_harm(self):
+    def test_repeated_signals_end_the_server(self):
         server = Server("--start", "--speed", "max")
         for _ in range(5):
             with contextlib.suppress(ProcessLookupError):
@@ -469,7 +409,7 @@ class StartAndEnd(unittest.TestCase):
 
     @unittest.skipIf(b"__ubsan_handle_dynamic_type" in open(evod_path, "rb").read(),
                      "UndefinedBehaviorSanitizer needs file descriptors to look at an object, and takes it for wrong")
-    def test_too_few_file_descriptors_do_not_stop_it_for_good(self):
+    def test_it_accepts_again_when_descriptors_are_free(self):
         server = self.serve(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (40, 40)))
 
         def run_out_of_them(lap):

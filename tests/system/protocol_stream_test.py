@@ -73,13 +73,13 @@ class Deltas(WithServer):
                 alike += 1
                 last_generation = snapshot.generation
 
-    def test_they_equal_plain_snapshots(self):
+    def test_deltas_equal_plain_snapshots(self):
         world = self.new_world(seed=3, obstacle_count=3, crate_count=4, obstacle_size_px=50, crate_size_px=30,
                                island_count=2, generation_s=2)
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=4)))
         self.compare(world, 3)
 
-    def test_they_show_wide_islands(self):
+    def test_deltas_show_wide_islands(self):
         self.compare(self.new_world(island_width_px=5000.0, crate_count=4), 1)
 
     def test_deltas_omit_constant_fields(self):
@@ -122,7 +122,7 @@ class Deltas(WithServer):
         self.client.call(create_world=c.CreateWorld(name=world))  # for the end of the test
         self.next(lambda p: p.base_sequence == 0)
 
-    def test_a_new_viewer_costs_the_others_nothing(self):
+    def test_a_new_viewer_causes_no_snapshots_for_others(self):
         world = self.new_world()
         self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=0.01,
                                                                   codec=stream_pb2.CODEC_DELTA))
@@ -348,7 +348,7 @@ class Views(WithServer):
         self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=3)))
         self.watch_together(world, 2)
 
-    def test_compressed_too_and_on_wide_islands(self):
+    def test_compressed_tiles_of_wide_islands_equal_plain(self):
         self.watch_together(self.wide_world(island_width_px=5000.0), compression=stream_pb2.COMPRESSION_ZSTD)
 
     def test_dots_and_densities_are_counted_right(self):
@@ -472,7 +472,7 @@ class Views(WithServer):
                     keyframes[tile.tile] += tile.base_sequence == 0
             before = snapshot
 
-    def test_they_wait_for_acknowledgements_and_the_newest_wins(self):
+    def test_tiles_wait_for_acknowledgements_newest_first(self):
         world = self.wide_world()
         subscription = self.subscribe(world, c.View(), unacknowledged_max=1)
         self.client.call(run=c.Run(world=world))

@@ -2,7 +2,7 @@
 
 Each test is one pool that all clients share. Eve, a viewer, takes all of it that she gets, and keeps it
 (greedy_user.py). Meanwhile Ada, a controller, does one of everything: each request of hers is answered right, at the
-first attempt. How long each takes is measured by tests/bench/quota_cost.py.
+first attempt.
 """
 import contextlib
 import http.client

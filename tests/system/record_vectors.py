@@ -6,7 +6,7 @@ EVOD is the program, MESSAGES the folder of the message classes: build/release/b
 --check it writes nothing, and fails where the files differ from what the server sends now. docs/PROTOCOL.md, "Test
 vectors", describes the files.
 
-The script computes what a frame decodes to without a decoder of deltas or tiles. Beside each subscription another one
+The script computes what a frame decodes to without a decoder of deltas or tiles. For each subscription another one
 with CODEC_PLAIN receives the same ticks; tiles, dots and densities are counted from its snapshots. Where a world is
 paused, the plain organisms are compared with the server's answers to GetOrganism, which involve no codec. At the end
 the decoder of docs/PROTOCOL.md must agree with everything.

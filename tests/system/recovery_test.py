@@ -570,7 +570,7 @@ class Recovery(unittest.TestCase):
         self.serve().end()
         self.assertEqual(requests_kept(), list(range(1, commands + 1)))
 
-    def test_a_file_whose_name_is_no_world_is_ignored(self):
+    def test_a_file_without_a_world_name_is_ignored(self):
         strange = pathlib.Path(self.data, "my run.evod")
         strange.write_text("not ours")
         server = self.serve("--seed", "5")

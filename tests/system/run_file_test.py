@@ -453,7 +453,7 @@ class Export(Case):
             self.assertEqual(first, str(last))
             self.assertIn("everything agrees", evod("verify", f"{data}/f.evod"))
 
-    def test_a_fork_is_created_beside_its_file(self):
+    def test_a_fork_is_created_in_the_folder_of_its_file(self):
         with tempfile.TemporaryDirectory() as folder:
             shutil.copy(plain, folder)
             evod("fork", f"{folder}/{os.path.basename(plain)}", "--name", "beside")

@@ -20,7 +20,7 @@ CLIENTS, GROWTH_BYTES = (25, math.inf) if os.environ.get("SANITIZED") else (100,
 
 class Soak(hostile.Attacked):
     def test_clients_come_and_go(self):
-        """Repeats the attacks beside honest clients."""
+        """Repeats the attacks together with honest clients."""
         begun, rounds, connected = time.monotonic(), [], 0
         while len(rounds) < 3 or time.monotonic() - begun < SECONDS:
             # The first round brings the heap to its size.

@@ -21,8 +21,8 @@ LARGER_FILES = {
     "tests/system/viewer/panels_test.cpp": "to be cut by its panels",
 }
 WIDER_FILES = {
-    "server/evolution/parameters.h": "a parameter is one line",
-    "server/parameters/parameters.h": "a parameter is one line",
+    "server/evolution/ga_parameters.h": "a parameter is one line",
+    "server/parameters/model_parameters.h": "a parameter is one line",
 }
 LARGER_FUNCTIONS = {
     "tests/determinism/scenarios.cpp": "a table, which a function initialises at its first call",
@@ -109,6 +109,19 @@ def banned_words(path, text):
                 yield path, number, f"`{name}`: instead of '{word}' write {BANNED[word]}"
             if name in BANNED_NAMES and path.suffix in CODE:
                 yield path, number, f"`{name}`: the name is {BANNED_NAMES[name]}"
+
+
+# "the output is no terminal", but not "there is no terminal" and "it is no longer there"
+IS_NO = re.compile(r"(?<!\bthere )\b(is|are|was|were) no (?!longer\b|more\b|less\b)\w+", re.I)
+
+
+def banned_grammar(path, text):
+    """Sentences that say "is no X" for "is not a X"."""
+    for number, line in enumerate(text.splitlines(), 1):
+        for found in IS_NO.finditer(line):
+            # a line may begin with the end of "there is no X"
+            if re.search(r"\w", re.sub(r"^\s*(///?|\*|#)\s*", "", line[:found.start()])):
+                yield path, number, f"`{found.group()}`: write '{found.group(1)} not' or 'there {found.group(1)} no'"
 
 
 def missing_braces(path, text):
@@ -284,8 +297,8 @@ def python_names(path, text):
                 yield path, statement.lineno, f"`{name}` is never used: remove it"
 
 
-RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source,
-         large_function, long_line, python_names)
+RULES = (banned_words, banned_grammar, missing_braces, torn_comments, long_test_names, header_without_page,
+         large_source, large_function, long_line, python_names)
 
 # Sources without a unit test of their own, by folder → the tests that cover them. `*` is every source below the folder.
 UNIT_TESTED_ELSEWHERE = {
@@ -373,9 +386,10 @@ def unbuilt_tests(names, text_of):
 
 SENTENCE_WORDS_MIN = 4
 # Folders to which the rule does not apply. core: the protocol is implemented once per language, and the tests compare
-# the verdicts of all decoders; history_csv is such a reader, too. viewer: panels that the page has, too, until evoview
-# is the minimal viewer; then remove this entry.
-VOICES_APART = ("client/web/src/core/", "client/core/history_csv", "client/viewer/")
+# the verdicts of all decoders; history_csv is such a reader, too. viewer: the labels, keys and notes of the widgets
+# that both clients have, and the shader that both compile.
+VOICES_APART = ("client/web/src/core/", "client/core/history_csv", "client/viewer/island/", "client/viewer/panels/",
+                "client/viewer/text/numbers", "client/viewer/view/", "client/viewer/world/")
 # Labels of states, axes, fields and empty plots: names of things rather than sentences.
 LABELS = {"waits for the disk", "gene units per generation", "generation of the parents", "no generation has ended yet"}
 SENTENCE_TEXT = re.compile(
@@ -435,7 +449,7 @@ def findings(root):
         except UnicodeDecodeError:
             continue
         for rule in RULES:
-            if rule is banned_words and WITHOUT_WORDS.search(name):
+            if rule in (banned_words, banned_grammar) and WITHOUT_WORDS.search(name):
                 continue
             yield from rule(path, text)
     yield from untested_sources(names, lambda name: (root / name).read_text())

@@ -50,8 +50,9 @@ _Converter = Callable[[google.protobuf.message.Message, Sequence[str]], Any]
 
 @functools.lru_cache(maxsize=None)
 def _converters(message: google.protobuf.descriptor.Descriptor) -> tuple[type[Any], tuple[_Converter, ...]]:
-    made = CLASSES[message.name]
-    return made, tuple(_converter(message.fields_by_name[field.name]) for field in dataclasses.fields(made))
+    result_class = CLASSES[message.name]
+    fields = dataclasses.fields(result_class)
+    return result_class, tuple(_converter(message.fields_by_name[field.name]) for field in fields)
 
 
 def _from_second(descendant: Any, names: Sequence[str]) -> int:
@@ -72,8 +73,8 @@ def _converter(field: google.protobuf.descriptor.FieldDescriptor) -> _Converter:
     if full_name == "Descendant.from_second":
         return _from_second
     if full_name in _OF_GENES:
-        of_genes = _OF_GENES[full_name]
-        return lambda message, names: of_genes(getattr(message, name), names)
+        convert_genes = _OF_GENES[full_name]
+        return lambda message, names: convert_genes(getattr(message, name), names)
     # Newer versions of protobuf have is_repeated in place of label.
     is_repeated = field.is_repeated if hasattr(field, "is_repeated") else field.label == field.LABEL_REPEATED
     is_optional = field.has_presence and not is_repeated

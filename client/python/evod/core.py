@@ -281,7 +281,8 @@ class Core:
     def unsubscribe(self, subscription: Subscription) -> None:
         """Ends the subscription."""
         subscription.ended = True
-        self._subscriptions = [known for known in self._subscriptions if known() not in (None, subscription)]
+        self._subscriptions = [reference for reference in self._subscriptions
+                               if reference() not in (None, subscription)]
         if subscription.server_id is not None:
             self._unsubscribe_from(subscription.server_id)
 
@@ -378,8 +379,8 @@ class Core:
     # subscriptions
 
     def _live_subscriptions(self) -> Iterator[Subscription]:
-        self._subscriptions = [known for known in self._subscriptions if known() is not None]
-        return (subscription for known in self._subscriptions if (subscription := known()) is not None)
+        self._subscriptions = [reference for reference in self._subscriptions if reference() is not None]
+        return (subscription for reference in self._subscriptions if (subscription := reference()) is not None)
 
     def _resubscribe(self, subscription: Subscription) -> None:
         replay = _replay_in(subscription.request)
@@ -392,7 +393,7 @@ class Core:
 
     def _take_subscription(self, pending: Pending, response: commands_pb2.Response) -> None:
         server_id = response.subscription.subscription_id
-        subscription = next((known for known in self._live_subscriptions() if known.pending is pending), None)
+        subscription = next((live for live in self._live_subscriptions() if live.pending is pending), None)
         if response.status.code != commands_pb2.CODE_UNSPECIFIED:
             if subscription is not None:
                 subscription.pending, subscription.refused = None, refusal(response.status)
@@ -416,8 +417,8 @@ class Core:
 
     def _take_event(self, event: stream_pb2.Event) -> None:
         damaged = event.HasField("world_damaged")
-        for server_id, known in list(self._of_server_id.items()):
-            subscription = known()
+        for server_id, reference in list(self._of_server_id.items()):
+            subscription = reference()
             if subscription is None:
                 self._unsubscribe_from(server_id)
             elif subscription.request.HasField("subscribe_events"):
@@ -429,10 +430,10 @@ class Core:
 
     def _take_snapshot(self, message: stream_pb2.SnapshotFrame) -> None:
         server_id = message.subscription_id
-        known = self._of_server_id.get(server_id)
-        if known is None:
+        reference = self._of_server_id.get(server_id)
+        if reference is None:
             return  # the subscription ended while the snapshot was in flight
-        subscription = known()
+        subscription = reference()
         if subscription is None:
             self._unsubscribe_from(server_id)
             return

@@ -189,10 +189,10 @@ class ExecutorSweep:
             running.touch()
             futures: dict[concurrent.futures.Future[bytes], tuple[SweepRun, str]] = {}
             try:
-                for one in missing:
-                    run = self._run(one, str(running))
+                for missing_run in missing:
+                    run = self._run(missing_run, str(running))
                     future = self._executor.submit(execute, run)
-                    futures[future] = run, one["part"]
+                    futures[future] = run, missing_run["part"]
                     future.add_done_callback(self._ended.put)
                 for count in range(1, len(futures) + 1):
                     self._report(count - 1, len(futures))

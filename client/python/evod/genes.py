@@ -33,12 +33,12 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
     names: tuple[str, ...] | None  #: the names of the last axis; None for the results of calculations
 
     def __new__(cls, values: Any, names: Iterable[str] = GENE_NAMES) -> Genes:
-        made = numpy.asarray(values).view(cls)
-        made.names = tuple(names)
-        if made.shape[-1:] != (len(made.names),):
-            raise ValueError(f"values: got the shape {made.shape}, allowed (…, {len(made.names)}): one column for each "
-                             "name")
-        return made
+        genes = numpy.asarray(values).view(cls)
+        genes.names = tuple(names)
+        if genes.shape[-1:] != (len(genes.names),):
+            raise ValueError(f"values: got the shape {genes.shape}, allowed (…, {len(genes.names)}): one column for "
+                             "each name")
+        return genes
 
     def __array_finalize__(self, template: Any) -> None:
         self.names = None
@@ -47,8 +47,8 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
         targets = options.get("out", ())
         if targets:
             options["out"] = tuple(_plain(array) for array in targets)
-        made = getattr(ufunc, method)(*(_plain(array) for array in inputs), **options)
-        return targets[0] if len(targets) == 1 else made
+        result = getattr(ufunc, method)(*(_plain(array) for array in inputs), **options)
+        return targets[0] if len(targets) == 1 else result
 
     def __getitem__(self, key: Any) -> Any:
         plain = _plain(self)
@@ -86,9 +86,9 @@ class ByGene(tuple[T, ...]):
     names: tuple[str, ...]  #: the names of the genes
 
     def __new__(cls, items: Iterable[Any], names: Iterable[str] = GENE_NAMES) -> ByGene[T]:
-        made = super().__new__(cls, items)
-        made.names = tuple(names)
-        return made
+        by_gene = super().__new__(cls, items)
+        by_gene.names = tuple(names)
+        return by_gene
 
     def __getnewargs__(self) -> tuple[Any, ...]:
         return tuple(self), self.names

@@ -55,11 +55,11 @@ class LabPlans:
         """Checks that a world exists and returns its name. Default: the only world, or "default" if there are
         several."""
         listed = (yield from request("list_worlds")).worlds
-        known = sorted(world.name for world in (*listed.worlds, *listed.damaged))
+        names = sorted(world.name for world in (*listed.worlds, *listed.damaged))
         if name is None:
-            name = known[0] if len(known) == 1 else "default"
-        if name not in known:
-            raise NotFound(f"there is no world '{name}'; the worlds are: {', '.join(known) or 'none'}")
+            name = names[0] if len(names) == 1 else "default"
+        if name not in names:
+            raise NotFound(f"there is no world '{name}'; the worlds are: {', '.join(names) or 'none'}")
         return name
 
     # ---- parameters -------------------------------------------------------------------------------------------------

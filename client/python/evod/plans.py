@@ -138,11 +138,11 @@ class SnapshotStream:
         self._taken = subscription.sessions, snapshot
         return snapshot if self._genes is None else (yield from self._with_genes(snapshot, self._genes))
 
-    def _with_genes(self, snapshot: Snapshot, known: dict[int, tuple[tuple[str, int], Genes]]) -> Plan[Snapshot]:
+    def _with_genes(self, snapshot: Snapshot, island_genes: dict[int, tuple[tuple[str, int], Genes]]) -> Plan[Snapshot]:
         moment = snapshot.run_id, snapshot.generation
-        if snapshot.island not in known or known[snapshot.island][0] != moment:
-            known[snapshot.island] = moment, (yield from genes_of(snapshot))
-        return snapshot.with_genes(known[snapshot.island][1])
+        if snapshot.island not in island_genes or island_genes[snapshot.island][0] != moment:
+            island_genes[snapshot.island] = moment, (yield from genes_of(snapshot))
+        return snapshot.with_genes(island_genes[snapshot.island][1])
 
     def set_view(self, view: c.View) -> Plan[None]:
         """Changes the view in this session and in later sessions."""
@@ -321,8 +321,8 @@ def close_replay(world: str) -> Plan[None]:
 
 def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
     """Returns the state of all worlds."""
-    known: Sequence[world_pb2.WorldInfo] = (yield from request("list_worlds")).worlds.worlds
-    return known
+    infos: Sequence[world_pb2.WorldInfo] = (yield from request("list_worlds")).worlds.worlds
+    return infos
 
 
 def damaged_worlds() -> Plan[Sequence[world_pb2.DamagedWorld]]:

@@ -80,7 +80,7 @@ class RunFile:
         self._clean_up = weakref.finalize(self, _remove, temporary, os.getpid()) if temporary is not None else None
         if not self.path.is_file():
             raise FileNotFound(f"there is no run file {self.path}")
-        # SQLite creates its shared memory file beside the run file, which fails in a read-only folder. No server can
+        # SQLite creates its shared memory file next to the run file, which fails in a read-only folder. No server can
         # write to a run file in such a folder, so the option `immutable` lets SQLite read without the shared memory
         # file.
         address = f"file:{urllib.parse.quote(str(self.path.resolve()))}?mode=ro"

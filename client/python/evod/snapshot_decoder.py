@@ -309,8 +309,8 @@ class _Deltas:
             raise DamagedData("a snapshot's position_bytes differ from those of its base")
         counts = _counts_of(message)
         content_before = {} if keyframe else self._content
-        known = sum(counts) + sum(len(columns["x"]) for columns in content_before.values())
-        body = _body_of(message, position_bytes, checked_before, 1024 + 64 * known)
+        entities_max = sum(counts) + sum(len(columns["x"]) for columns in content_before.values())
+        body = _body_of(message, position_bytes, checked_before, 1024 + 64 * entities_max)
         ticks = body.number("<u2")
         content = {}
         for (name, sizes), count in zip(_SIZES.items(), counts):

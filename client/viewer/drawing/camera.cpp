@@ -9,6 +9,8 @@ void Camera::set_viewport(Rectangle screen, double scale) {
     viewport_ = {screen.left, screen.top, std::max(screen.width, 1.0), std::max(screen.height, 1.0)};
     if (fitted_) {
         fit();
+    } else {
+        stay_on_island();
     }
 }
 
@@ -38,8 +40,16 @@ void Camera::fit() {
     fitted_ = true;
 }
 
+/// Clamps the centre so that the viewport shows nothing beyond the margin around the walls. An island that is smaller
+/// than the viewport is centred.
 void Camera::stay_on_island() {
-    centre_ = {std::clamp(centre_.x, 0.0, island_width_), std::clamp(centre_.y, 0.0, island_height_)};
+    const double around = scale_ * (wall_pixels + margin_pixels) / zoom_;
+    const auto clamped = [&](double centre, double island, double viewport) {
+        const double half = viewport / zoom_ / 2 - around; // from the centre to an end of the island, at least
+        return 2 * half >= island ? island / 2 : std::clamp(centre, half, island - half);
+    };
+    centre_ = {clamped(centre_.x, island_width_, viewport_.width),
+               clamped(centre_.y, island_height_, viewport_.height)};
 }
 
 void Camera::pan(Point pixels) {
@@ -62,17 +72,6 @@ void Camera::zoom_at(Point screen, double factor) {
     zoom_ = std::clamp(zoom_ * factor, zoom_min(), zoom_max);
     const Point moved = to_world(screen);
     centre_ = {centre_.x + held.x - moved.x, centre_.y + held.y - moved.y};
-    stay_on_island();
-    fitted_ = false;
-}
-
-void Camera::follow(const Camera& other) {
-    if (other.fitted_) {
-        fit();
-        return;
-    }
-    centre_ = other.centre_;
-    zoom_ = std::clamp(other.zoom_, zoom_min(), zoom_max);
     stay_on_island();
     fitted_ = false;
 }

@@ -4,7 +4,7 @@
 // unit of length. Screen coordinates are in pixels of the window. The viewport is the part of the window in which the
 // island is drawn; the strips with texts are outside the viewport.
 //
-// Owner        a pane of the stage.
+// Owner        WorldView.
 // Threads      none; used on the drawing thread.
 #pragma once
 
@@ -42,18 +42,15 @@ class Camera {
     void fit();
     bool fitted() const { return fitted_; }
 
-    /// Moves the drawn island by this many pixels. The centre of the viewport stays on the island.
+    /// Moves the drawn island by this many pixels. The viewport stays on the island.
     void pan(Point pixels);
 
-    /// Centres the viewport on a point of the world, clamped to the island.
+    /// Centres the viewport on a point of the world, as far as the viewport stays on the island.
     void look_at(Point world);
 
     /// Multiplies the zoom by `factor`, clamped to zoom_min() to zoom_max. The world point under `screen` does not
-    /// move.
+    /// move, as far as the viewport stays on the island.
     void zoom_at(Point screen, double factor);
-
-    /// Copies the centre and the zoom of `other`. If `other` shows its whole island, shows this whole island instead.
-    void follow(const Camera& other);
 
     Point to_screen(Point world) const;
     Point to_world(Point screen) const;

@@ -20,11 +20,6 @@ inline void prepare_keys() {
 #endif
 }
 
-/// Whether a key was pressed in this frame, or repeated while it is held.
-inline bool is_key_pressed(ImGuiKey key, bool repeat = true) {
-    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeat);
-}
-
 /// Informs Dear ImGui that a key is pressed or released. To be called at most once per key and frame.
 inline void set_key(ImGuiKey key, bool down) {
 #if IMGUI_VERSION_NUM >= 18900

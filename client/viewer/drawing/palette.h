@@ -53,7 +53,7 @@ constexpr Colour selected{255, 255, 255};
 constexpr Colour food_radius{62, 176, 76, 220};
 constexpr Colour poison_radius{140, 8, 24, 220};
 constexpr Colour trail{70, 30, 100};
-constexpr Colour unknown{140, 140, 144}; // for organisms without a value, or in a lineage without a colour
+constexpr Colour unknown{140, 140, 144}; // for organisms without a value
 
 constexpr Colour strip{230, 230, 232};
 constexpr Colour strip_edge{150, 150, 154};
@@ -95,19 +95,6 @@ constexpr std::array<Colour, 7> kinds{{
     {204, 121, 167} // reddish purple
 }};
 
-/// Colours of lineages. They differ from each other, from food and poison and from the background of every look, with
-/// every kind of colour vision. With some kinds, the vermilion of `kinds` resembles poison, its green resembles food,
-/// and its purple resembles `unknown`.
-constexpr std::array<Colour, 7> lineages{{
-    kinds[0],       // orange
-    kinds[1],       // sky blue
-    {60, 132, 90},  // dark green
-    kinds[3],       // yellow
-    kinds[4],       // blue
-    {140, 70, 255}, // violet
-    {160, 84, 136}  // plum
-}};
-
 /// The colours of an island in one look.
 struct IslandColours {
     Colour outside;              // around the walls
@@ -129,24 +116,8 @@ constexpr Colour seeks = kinds[4];
 constexpr Colour flees = kinds[5];
 
 constexpr Colour plot_background{252, 252, 253};
-constexpr Colour plot_grid{226, 226, 230};
-// Colours of the lines and bars of plots.
 constexpr Colour series_orange = kinds[0];
-constexpr Colour series_sky = kinds[1];
-constexpr Colour series_green = kinds[2];
 constexpr Colour series_blue = kinds[4];
-constexpr Colour series_vermilion = kinds[5];
-constexpr Colour series_purple = kinds[6];
-constexpr Colour series_grey{110, 110, 116};
-constexpr Colour plot_mark{74, 58, 150}; // a change of parameters
-// Colours of the integrators in the time step demonstration.
-constexpr Colour explicit_euler = kinds[5];
-constexpr Colour symplectic_euler = kinds[4];
-
-// Colours of the family tree.
-constexpr Colour first_parent = kinds[4];
-constexpr Colour second_parent = kinds[0];
-constexpr Colour selected_line{206, 16, 110}; // of the selected organism and its ancestors
 
 } // namespace palette
 } // namespace evod::viewer

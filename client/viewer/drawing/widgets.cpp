@@ -190,12 +190,6 @@ bool choice(std::string_view drop_down, const std::string& name, bool chosen, st
     return taken;
 }
 
-bool window_pressed() {
-    constexpr ImGuiHoveredFlags in_any_case =
-        ImGuiHoveredFlags_AllowWhenBlockedByActiveItem; // for example, while a field is being edited
-    return ImGui::IsWindowHovered(in_any_case) && (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1));
-}
-
 void small_text(std::string_view text, Colour colour) {
     ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
     write_lines(text, ImGui::GetContentRegionAvail().x);

@@ -113,9 +113,6 @@ bool begin_drop_down(const char* label, const char* chosen, std::string_view nam
 /// alias  another name of the choice; empty: none
 bool choice(std::string_view drop_down, const std::string& name, bool chosen, std::string_view alias = {});
 
-/// Returns whether a mouse button is pressed in this frame on the current window or on one of its widgets.
-bool window_pressed();
-
 /// Writes small text in `colour`, wrapped at the edge of the panel.
 void small_text(std::string_view text, Colour colour = palette::text_quiet);
 

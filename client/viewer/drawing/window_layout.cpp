@@ -15,26 +15,14 @@ double share(double whole, std::size_t count) {
 
 } // namespace
 
-double sidebar_pixels(double wanted, unsigned window_pixels, double scale) {
+double sidebar_pixels(unsigned window_pixels, double scale) {
     constexpr double share_max = 0.55;
-    return std::floor(std::min(std::max(wanted, sidebar_width_min * scale), share_max * window_pixels));
+    return std::floor(std::min(double{sidebar_width} * scale, share_max * window_pixels));
 }
 
 Rectangle viewport_of(Rectangle place, double scale) {
     const double top = std::round(top_strip * scale), bottom = std::round(bottom_strip * scale);
     return {place.left, place.top + top, place.width, std::max(place.height - top - bottom, 1.0)};
-}
-
-std::vector<Rectangle> side_by_side(Rectangle place, std::size_t count) {
-    std::vector<Rectangle> columns;
-    const double width = share(place.width, std::max<std::size_t>(count, 1));
-    for (std::size_t i = 0; i < count; ++i) {
-        columns.push_back({place.left + static_cast<double>(i) * (width + gap_pixels), place.top, width, place.height});
-    }
-    if (!columns.empty()) {
-        columns.back().width = std::max(place.left + place.width - columns.back().left, 1.0);
-    }
-    return columns;
 }
 
 std::vector<Rectangle> in_tiles(Rectangle place, std::size_t count, double aspect) {

@@ -1,4 +1,4 @@
-// Window layout: divides a window into the sidebar and columns for worlds, and divides the part of a world into tiles
+// Window layout: divides a window into the sidebar and the world, and divides the part of a world into tiles
 // for its islands.
 //
 // Owner        none: pure functions.
@@ -15,13 +15,11 @@ namespace evod::viewer {
 /// Heights in pixels at scale 1 of a world's title strip and of its statistics strip.
 constexpr float top_strip = 38, bottom_strip = 30;
 
-/// Widths in pixels at scale 1: of the sidebar until the user changes it, its minimum, and of the strip that remains of
-/// a collapsed sidebar.
-constexpr float sidebar_width = 400, sidebar_width_min = 300, sidebar_collapsed = 26;
+/// Widths in pixels at scale 1 of the sidebar, and of the strip that remains of a collapsed one.
+constexpr float sidebar_width = 400, sidebar_collapsed = 26;
 
-/// The width in whole pixels of a sidebar that the user or a panel wants to be `wanted` pixels wide. The worlds keep at
-/// least 45 % of the window.
-double sidebar_pixels(double wanted, unsigned window_pixels, double scale = 1);
+/// The width of the sidebar in whole pixels. The world keeps at least 45 % of the window.
+double sidebar_pixels(unsigned window_pixels, double scale = 1);
 
 /// The part of `place` in which the island is drawn: `place` without the title and statistics strips of its world.
 Rectangle viewport_of(Rectangle place, double scale = 1);
@@ -29,11 +27,8 @@ inline Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
     return viewport_of({0, 0, double(width_pixels), double(height_pixels)});
 }
 
-/// Gap in pixels between neighbouring worlds or tiles.
+/// Gap in pixels between neighbouring tiles.
 constexpr double gap_pixels = 2;
-
-/// Divides `place` into `count` columns of whole pixels, from left to right. The last column takes the remaining width.
-std::vector<Rectangle> side_by_side(Rectangle place, std::size_t count);
 
 /// Divides `place` into `count` tiles of equal size in whole pixels, row by row, so that the islands are as large as
 /// possible.

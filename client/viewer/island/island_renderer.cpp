@@ -54,13 +54,7 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count, double
            static_cast<double>(visible_count) * label_area <= covered_max * viewport_area;
 }
 
-namespace {
-
-/// Returns the circle at a point of the screen, as organism_at() does.
-///
-/// radius_px  a function that returns the radius of a circle, by its index
-template <class Radius>
-std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Radius radius_px, const Camera& camera) {
+std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
     if (!camera.viewport().contains(screen)) {
         return std::nullopt;
     }
@@ -68,10 +62,10 @@ std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Rad
     const double pixel = camera.scale() / camera.zoom(), target_min = 12 * pixel, slack = 3 * pixel;
     std::optional<std::size_t> found;
     bool found_inside = false;
-    double nearest = 0; // distance to the found circle: to its centre if it contains the point, otherwise to its edge
-    for (std::size_t i = 0, size = circles.size(); i < size; ++i) {
-        const auto [x_px, y_px] = circles[i];
-        const double radius = radius_px(i);
+    double nearest = 0; // distance to the found one: to its centre if it contains the point, otherwise to its edge
+    for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
+        const auto [x_px, y_px] = organisms[i];
+        const double radius = static_cast<double>(organisms.entities->radius_px(i));
         const double x = x_px - world.x, y = y_px - world.y, reach = std::max(radius + slack, target_min);
         if (x * x + y * y > reach * reach) {
             continue;
@@ -86,18 +80,6 @@ std::optional<std::size_t> circle_at(Point screen, const Positions& circles, Rad
         }
     }
     return found;
-}
-
-} // namespace
-
-std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera) {
-    return circle_at(
-        screen, organisms, [&](std::size_t i) { return organisms.entities->radius_px(i); }, camera);
-}
-
-std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, double radius_px, const Camera& camera) {
-    return circle_at(
-        screen, {.entities = &items}, [&](std::size_t) { return radius_px; }, camera);
 }
 
 namespace {
@@ -118,9 +100,9 @@ void add_dots(const codec::ReceivedSnapshot& snapshot, codec::DecodedDots::Place
 
 void IslandRenderer::set_dots(Layer& layer, const codec::ReceivedSnapshot& snapshot,
                               codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px) {
-    shapes_.clear();
-    add_dots(snapshot, which, radius_px, shapes_);
-    layer.set(shapes_);
+    reused_.shapes.clear();
+    add_dots(snapshot, which, radius_px, reused_.shapes);
+    layer.set(reused_.shapes);
 }
 
 void IslandRenderer::set_items(const codec::ReceivedSnapshot& snapshot) {
@@ -134,26 +116,26 @@ void IslandRenderer::set_items(const codec::ReceivedSnapshot& snapshot) {
         }
         add_dots(snapshot, dots, radius_px, shapes);
     };
-    read(snapshot.entities->food, &codec::DecodedDots::food, food_shapes_);
-    read(snapshot.entities->poison, &codec::DecodedDots::poison, shapes_);
-    food_.set(food_shapes_);
-    poison_.set(shapes_);
+    read(snapshot.entities->food, &codec::DecodedDots::food, reused_.food_shapes);
+    read(snapshot.entities->poison, &codec::DecodedDots::poison, reused_.shapes);
+    layers_.food.set(reused_.food_shapes);
+    layers_.poison.set(reused_.shapes);
     // The same share of both, so that the dots show which kind is more frequent.
-    const std::size_t most = std::max({food_shapes_.size(), shapes_.size(), std::size_t{1}});
+    const std::size_t most = std::max({reused_.food_shapes.size(), reused_.shapes.size(), std::size_t{1}});
     const double share = static_cast<double>(item_dots_max) / static_cast<double>(most);
-    keep_share(share, food_shapes_);
-    keep_share(share, shapes_);
-    few_food_.set(food_shapes_);
-    few_poison_.set(shapes_);
+    keep_share(share, reused_.food_shapes);
+    keep_share(share, reused_.shapes);
+    layers_.few_food.set(reused_.food_shapes);
+    layers_.few_poison.set(reused_.shapes);
 }
 
 void IslandRenderer::set_boxes(Layer& layer, const Positions& boxes) {
-    shapes_.resize(boxes.size());
-    for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    reused_.shapes.resize(boxes.size());
+    for (std::size_t i = 0; i < reused_.shapes.size(); ++i) {
         const auto [x, y] = boxes[i];
-        shapes_[i] = {x, y, boxes.entities->half_width_px(i), boxes.entities->half_height_px(i)};
+        reused_.shapes[i] = {x, y, boxes.entities->half_width_px(i), boxes.entities->half_height_px(i)};
     }
-    layer.set(shapes_);
+    layer.set(reused_.shapes);
 }
 
 void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot) {
@@ -162,7 +144,7 @@ void IslandRenderer::upload_snapshot(const std::shared_ptr<const codec::Received
     }
     uploaded_ = snapshot;
     items_uploaded_ = false;
-    set_boxes(obstacles_, {.entities = &snapshot->entities->obstacles});
+    set_boxes(layers_.obstacles, {.entities = &snapshot->entities->obstacles});
     full_health_ = health_scale(snapshot->entities->organisms, {}).high;
 }
 
@@ -176,10 +158,10 @@ void IslandRenderer::draw_walls(const codec::ReceivedSnapshot& snapshot, const C
         const auto further = static_cast<float>(Camera::margin_pixels * camera.scale() / camera.zoom());
         const float left = -beyond, top = -beyond, right = static_cast<float>(snapshot.about.width_px()) + beyond,
                     bottom = static_cast<float>(snapshot.about.height_px()) + beyond;
-        shadow_.set(std::array{
+        layers_.shadow.set(std::array{
             Line{left - further, top, right + further, top}, Line{left - further, bottom, right + further, bottom},
             Line{left, top - further, left, bottom + further}, Line{right, top - further, right, bottom + further}});
-        painter_.draw(shadow_, style);
+        painter_.draw(layers_.shadow, style);
     }
     painter_.fill(
         {inside.left - thickness, inside.top - thickness, inside.width + 2 * thickness, inside.height + 2 * thickness},
@@ -197,11 +179,11 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
     density_scale_.reset();
     if (const auto& snapshot = view.latest()) {
         upload_snapshot(snapshot);
-        set_boxes(crates_, view.crates_at(blend));
+        set_boxes(layers_.crates, view.crates_at(blend));
         const Positions organisms = view.organisms_at(blend);
         draw_walls(*snapshot, camera, look);
-        painter_.draw(obstacles_, styles.obstacle);
-        painter_.draw(crates_, styles.crate);
+        painter_.draw(layers_.obstacles, styles.obstacle);
+        painter_.draw(layers_.crates, styles.crate);
         // After a change of the level of detail, draw densities until the first snapshot with the new detail arrives.
         const bool has_densities = std::ranges::any_of(
             snapshot->tiles, [](const auto& tile) { return tile.detail == evod::v1::DETAIL_DENSITY; });
@@ -209,14 +191,14 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
             draw_density(*snapshot, organisms, camera, island_view);
         } else {
             draw_items(*snapshot, camera, styles);
-            discs_.clear();
-            add_discs(organisms, discs_);
+            reused_.discs.clear();
+            add_discs(organisms, reused_.discs);
             const auto chosen = [&](Which which) {
                 Chosen indices;
                 if (which == Which::Pointed) {
                     indices.emplace();
                     for (const auto& index : {highlighted.pointed_at, highlighted.selected}) {
-                        if (index && *index < discs_.size()) {
+                        if (index && *index < reused_.discs.size()) {
                             indices->push_back(*index);
                         }
                     }
@@ -245,8 +227,8 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
                 painter_.draw(layer, style);
             }
         };
-        highlight(highlighted.selected, selected_, styles.selected);
-        highlight(highlighted.pointed_at, pointed_at_, styles.pointed_at);
+        highlight(highlighted.selected, layers_.selected, styles.selected);
+        highlight(highlighted.pointed_at, layers_.pointed_at, styles.pointed_at);
     }
     painter_.end();
 }
@@ -254,46 +236,44 @@ void IslandRenderer::draw(const core::SnapshotInterpolator& view, double blend, 
 void IslandRenderer::draw_items(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const Styles& styles) {
     if (!std::exchange(items_uploaded_, true)) {
         set_items(snapshot);
-        set_dots(organism_dots_, snapshot, &codec::DecodedDots::organisms, typical_radius_px);
-        set_dots(crate_dots_, snapshot, &codec::DecodedDots::crates, typical_radius_px);
-        set_dots(obstacle_dots_, snapshot, &codec::DecodedDots::obstacles, typical_radius_px);
+        set_dots(layers_.organism_dots, snapshot, &codec::DecodedDots::organisms, typical_radius_px);
+        set_dots(layers_.crate_dots, snapshot, &codec::DecodedDots::crates, typical_radius_px);
+        set_dots(layers_.obstacle_dots, snapshot, &codec::DecodedDots::obstacles, typical_radius_px);
     }
     const bool small = too_small_to_see(camera);
-    painter_.draw(obstacle_dots_, styles.obstacle);
-    painter_.draw(crate_dots_, styles.crate);
-    painter_.draw(small ? few_poison_ : poison_, small ? styles.poison_dot : styles.poison);
-    painter_.draw(small ? few_food_ : food_, small ? styles.food_dot : styles.food);
-    painter_.draw(organism_dots_, styles.organism_dot);
+    painter_.draw(layers_.obstacle_dots, styles.obstacle);
+    painter_.draw(layers_.crate_dots, styles.crate);
+    painter_.draw(small ? layers_.few_poison : layers_.poison, small ? styles.poison_dot : styles.poison);
+    painter_.draw(small ? layers_.few_food : layers_.food, small ? styles.food_dot : styles.food);
+    painter_.draw(layers_.organism_dots, styles.organism_dot);
 }
 
 void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Camera& camera,
                                     const IslandView& island_view) {
     const Styles& styles = styles_of(island_view.options.look);
     if (styles.organism.form == Form::Body) {
-        set_health(organisms, full_health_, discs_);
+        set_health(organisms, full_health_, reused_.discs);
     }
     if (island_view.options.colour_by == ColourBy::Nothing) {
-        organisms_.set(discs_);
-        return painter_.draw(organisms_, styles.organism);
+        layers_.organisms.set(reused_.discs);
+        return painter_.draw(layers_.organisms, styles.organism);
     }
-    colours_.clear();
+    reused_.colours.clear();
     const Population* population = island_view.population();
     if (island_view.options.colour_by == ColourBy::Health) {
-        add_health_colours(organisms, ColourScale{island_view.options.ramp, 0, full_health_}, colours_);
-    } else if (population != nullptr && island_view.options.colour_by == ColourBy::Lineage) {
-        add_family_colours(organisms, island_view.families(), island_view.family_colours(), colours_);
+        add_health_colours(organisms, ColourScale{island_view.options.ramp, 0, full_health_}, reused_.colours);
     } else if (population != nullptr && island_view.options.gene < population->gene_count()) {
         add_gene_colours(organisms, *population, island_view.options.gene,
-                         gene_scale(*population, island_view.options.gene, island_view.options.ramp), colours_);
+                         gene_scale(*population, island_view.options.gene, island_view.options.ramp), reused_.colours);
     } else {
-        colours_.assign(discs_.size(), palette::unknown);
+        reused_.colours.assign(reused_.discs.size(), palette::unknown);
     }
-    organisms_.set(discs_, colours_);
+    layers_.organisms.set(reused_.discs, reused_.colours);
     ShapeStyle style = styles.coloured;
     if (camera.zoom() < outline_zoom_min) {
         style.edge_pixels = 0;
     }
-    painter_.draw(organisms_, style);
+    painter_.draw(layers_.organisms, style);
 }
 
 /// Draws the headings of organisms that are large enough for them to be seen.
@@ -303,13 +283,13 @@ void IslandRenderer::draw_headings(const Positions& organisms, const Camera& cam
     if (organisms.size() == 0 || !organisms.entities->has_headings() || radius_pixels < radius_pixels_min) {
         return;
     }
-    lines_.clear();
+    reused_.lines.clear();
     // Lines of small organisms are shorter.
     const double beyond_pixels = std::min(static_cast<double>(styles.heading_pixels), radius_pixels + 4);
     const double beyond_px = beyond_pixels * camera.scale() / camera.zoom();
-    add_headings(organisms, discs_, camera.visible(), static_cast<float>(beyond_px), lines_);
-    headings_.set(lines_);
-    painter_.draw(headings_, styles.heading);
+    add_headings(organisms, reused_.discs, camera.visible(), static_cast<float>(beyond_px), reused_.lines);
+    layers_.headings.set(reused_.lines);
+    painter_.draw(layers_.headings, styles.heading);
 }
 
 void IslandRenderer::draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,
@@ -320,13 +300,14 @@ void IslandRenderer::draw_density(const codec::ReceivedSnapshot& snapshot, const
     }
     density_cell_px_ = grids.front().cell_px;
     density_scale_ = viewer::density_scale(grids, island_view.options.ramp);
-    shapes_.clear();
-    colours_.clear();
+    reused_.shapes.clear();
+    reused_.colours.clear();
     for (const DensityGrid& grid : grids) {
-        add_density(grid, {snapshot.about.width_px(), snapshot.about.height_px()}, *density_scale_, shapes_, colours_);
+        add_density(grid, {snapshot.about.width_px(), snapshot.about.height_px()}, *density_scale_, reused_.shapes,
+                    reused_.colours);
     }
-    density_.set(shapes_, colours_);
-    painter_.draw(density_, density_style);
+    layers_.density.set(reused_.shapes, reused_.colours);
+    painter_.draw(layers_.density, density_style);
 }
 
 void IslandRenderer::draw_radii(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view,
@@ -339,10 +320,10 @@ void IslandRenderer::draw_radii(const codec::Entities& organisms, const Camera& 
     for (const auto& [name, style] : {std::pair<std::string_view, const ShapeStyle&>{"food_radius", styles.food_radius},
                                       {"poison_radius", styles.poison_radius}}) {
         if (const auto gene = gene_named(name, island_view)) {
-            shapes_.clear();
-            add_radii(organisms, discs_, *population, *gene, camera.visible(), chosen, shapes_);
-            radii_.set(shapes_);
-            painter_.draw(radii_, style);
+            reused_.shapes.clear();
+            add_radii(organisms, reused_.discs, *population, *gene, camera.visible(), chosen, reused_.shapes);
+            layers_.radii.set(reused_.shapes);
+            painter_.draw(layers_.radii, style);
         }
     }
 }
@@ -353,15 +334,15 @@ void IslandRenderer::draw_forces(const codec::Entities& organisms, const Camera&
     if (island_view.options.forces == Which::None || population == nullptr || !shows_details(camera)) {
         return;
     }
-    arrow_lines_.clear();
-    target_lines_.clear();
-    add_forces(organisms, discs_, *population, camera.visible(), chosen, palette::of(island_view.options.look),
-               arrow_lines_, target_lines_);
+    reused_.arrow_lines.clear();
+    reused_.target_lines.clear();
+    add_forces(organisms, reused_.discs, *population, camera.visible(), chosen, palette::of(island_view.options.look),
+               reused_.arrow_lines, reused_.target_lines);
     const Styles& styles = styles_of(island_view.options.look);
-    targets_.set(target_lines_.lines, target_lines_.colours);
-    painter_.draw(targets_, styles.target);
-    arrows_.set(arrow_lines_.lines, arrow_lines_.colours);
-    painter_.draw(arrows_, styles.arrow);
+    layers_.targets.set(reused_.target_lines.lines, reused_.target_lines.colours);
+    painter_.draw(layers_.targets, styles.target);
+    layers_.arrows.set(reused_.arrow_lines.lines, reused_.arrow_lines.colours);
+    painter_.draw(layers_.arrows, styles.arrow);
 }
 
 void IslandRenderer::draw_trails(const codec::ReceivedSnapshot& snapshot, const Camera& camera,
@@ -378,11 +359,11 @@ void IslandRenderer::draw_trails(const codec::ReceivedSnapshot& snapshot, const 
         if (std::ranges::find(trail_segments_, snapshots[i], &TrailSegment::to) == trail_segments_.end()) {
             trail_segments_.push_back({snapshots[i - 1], snapshots[i], std::make_unique<Layer>()});
             const codec::Entities& to = snapshots[i]->entities->organisms;
-            shapes_.clear();
-            lines_.clear();
-            add_discs({.entities = &to}, shapes_);
-            add_paths(snapshots[i - 1]->entities->organisms, to, shapes_, lines_);
-            trail_segments_.back().layer->set(lines_);
+            reused_.shapes.clear();
+            reused_.lines.clear();
+            add_discs({.entities = &to}, reused_.shapes);
+            add_paths(snapshots[i - 1]->entities->organisms, to, reused_.shapes, reused_.lines);
+            trail_segments_.back().layer->set(reused_.lines);
         }
     }
     const ShapeStyle& style = styles_of(island_view.options.look).trail;
@@ -390,10 +371,10 @@ void IslandRenderer::draw_trails(const codec::ReceivedSnapshot& snapshot, const 
     for (const TrailSegment& segment : trail_segments_) {
         painter_.draw(*segment.layer, aged(style, (now_s - segment.to->about.simulated_s()) / Trails::kept_s));
     }
-    lines_.clear();
-    add_paths(snapshots.back()->entities->organisms, snapshot.entities->organisms, discs_, lines_);
-    trail_ends_.set(lines_);
-    painter_.draw(trail_ends_, style);
+    reused_.lines.clear();
+    add_paths(snapshots.back()->entities->organisms, snapshot.entities->organisms, reused_.discs, reused_.lines);
+    layers_.trail_ends.set(reused_.lines);
+    painter_.draw(layers_.trail_ends, style);
 }
 
 /// Draws each flash as a growing and fading disc in the colour of what was eaten or died.
@@ -402,8 +383,8 @@ void IslandRenderer::draw_flashes(double now_s, const IslandView& island_view) {
         return;
     }
     const palette::IslandColours& of = palette::of(island_view.options.look);
-    shapes_.clear();
-    colours_.clear();
+    reused_.shapes.clear();
+    reused_.colours.clear();
     for (const Flash& flash : island_view.flashes().all()) {
         const double age = (now_s - flash.began_s) / Flashes::shown_s;
         if (age < 0 || age >= 1) { // it begins after the shown time, which is interpolated
@@ -413,12 +394,12 @@ void IslandRenderer::draw_flashes(double now_s, const IslandView& island_view) {
         Colour colour = death ? of.death : flash.kind == Flash::Kind::Food ? of.food : of.poison;
         colour.alpha = static_cast<std::uint8_t>(255 * (1 - age));
         const auto radius = static_cast<float>(flash.radius_px * (1.5 + (death ? 2 : 3.5) * std::sqrt(age)));
-        shapes_.push_back({flash.x_px, flash.y_px, radius, radius});
-        colours_.push_back(colour);
+        reused_.shapes.push_back({flash.x_px, flash.y_px, radius, radius});
+        reused_.colours.push_back(colour);
     }
-    if (!shapes_.empty()) {
-        flashes_.set(shapes_, colours_);
-        painter_.draw(flashes_, styles_of(island_view.options.look).ripple);
+    if (!reused_.shapes.empty()) {
+        layers_.flashes.set(reused_.shapes, reused_.colours);
+        painter_.draw(layers_.flashes, styles_of(island_view.options.look).ripple);
     }
 }
 
@@ -431,44 +412,45 @@ void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double 
     }
     const Positions organisms = view.organisms_at(blend);
     const double zoom_min = static_cast<double>(styles_of(look).label_zoom_min);
-    labelled_.clear();
+    reused_.labelled.clear();
     if (labels_are_readable(camera, 0, zoom_min)) {
         const Rectangle visible = camera.visible();
         for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
             const auto [x, y] = organisms[i];
             if (visible.contains({x, y})) {
-                labelled_.push_back(i);
+                reused_.labelled.push_back(i);
             }
         }
     }
-    named_.clear();
+    reused_.named.clear();
     if (organisms.size() <= with_names_max) {
-        named_.assign(healthiest.begin(), healthiest.end());
+        reused_.named.assign(healthiest.begin(), healthiest.end());
     }
     for (const auto& index : {highlighted.selected, highlighted.pointed_at}) {
-        if (index && *index < organisms.size() && std::ranges::find(named_, *index) == named_.end()) {
-            named_.push_back(*index);
+        if (index && *index < organisms.size() && std::ranges::find(reused_.named, *index) == reused_.named.end()) {
+            reused_.named.push_back(*index);
         }
     }
-    if (labelled_.empty() || !labels_are_readable(camera, labelled_.size(), zoom_min)) {
-        labelled_ = named_;
+    if (reused_.labelled.empty() || !labels_are_readable(camera, reused_.labelled.size(), zoom_min)) {
+        reused_.labelled = reused_.named;
     }
     const auto text_of = [&](std::size_t i) {
         const std::string health = std::to_string(shown_health(organisms.entities->health(i)));
-        return std::ranges::find(named_, i) == named_.end()
+        return std::ranges::find(reused_.named, i) == reused_.named.end()
                    ? health
                    : "#" + std::to_string(organisms.entities->id[i]) + " " + health;
     };
-    labels_.clear();
-    for (const std::size_t i : labelled_) {
+    reused_.labels.clear();
+    for (const std::size_t i : reused_.labelled) {
         const auto [x, y] = organisms[i];
-        labels_.push_back({camera.to_screen({x, y}), organisms.entities->radius_px(i) * camera.zoom(),
-                           static_cast<double>(size_of(text_of(i), font).x)});
+        reused_.labels.push_back({camera.to_screen({x, y}), organisms.entities->radius_px(i) * camera.zoom(),
+                                  static_cast<double>(size_of(text_of(i), font).x)});
     }
-    const auto corners = place_labels(labels_, static_cast<double>(font.FontSize), on_screen(camera, snapshot->about));
-    for (std::size_t i = 0; i < labelled_.size(); ++i) {
+    const auto corners =
+        place_labels(reused_.labels, static_cast<double>(font.FontSize), on_screen(camera, snapshot->about));
+    for (std::size_t i = 0; i < reused_.labelled.size(); ++i) {
         write(list, font, {static_cast<float>(corners[i].x), static_cast<float>(corners[i].y)}, palette::of(look).label,
-              text_of(labelled_[i]));
+              text_of(reused_.labelled[i]));
     }
 }
 

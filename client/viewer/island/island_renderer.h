@@ -45,12 +45,6 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count, double
 /// returns  an index in `organisms`; nullopt: no organism is there
 std::optional<std::size_t> organism_at(Point screen, const Positions& organisms, const Camera& camera);
 
-/// Returns the item at a point of the screen, in the same way as organism_at().
-///
-/// items      the food or the poison of a snapshot
-/// radius_px  of every item
-std::optional<std::size_t> item_at(Point screen, const codec::Entities& items, double radius_px, const Camera& camera);
-
 class IslandRenderer {
   public:
     /// The highlighted organisms, by their index in the snapshot.
@@ -94,12 +88,28 @@ class IslandRenderer {
     void set_items(const codec::ReceivedSnapshot& snapshot);
     void set_boxes(Layer& layer, const Positions& boxes);
 
+    struct Layers {
+        Layer shadow, food, poison, obstacles, crates, organisms, headings, pointed_at, selected;
+        Layer few_food, few_poison; // shares of the items, for dots
+        // Tiles streamed as dots contain only positions.
+        Layer organism_dots, crate_dots, obstacle_dots;
+        Layer density, radii, arrows, targets, trail_ends, flashes;
+    };
+    /// Memory that is reused in every frame.
+    struct Reused {
+        std::vector<Shape> discs; // the organisms in this frame
+        std::vector<Shape> shapes, food_shapes;
+        std::vector<Line> lines;
+        std::vector<Colour> colours;
+        ColouredLines arrow_lines, target_lines;
+        std::vector<std::size_t> labelled; // indices of the organisms with a number
+        std::vector<std::size_t> named;    // indices of those whose label contains the id, too
+        std::vector<HealthLabel> labels;
+    };
+
     ShapePainter painter_;
-    Layer shadow_, food_, poison_, obstacles_, crates_, organisms_, headings_, pointed_at_, selected_;
-    Layer few_food_, few_poison_; // shares of the items, for dots
-    // Tiles streamed as dots contain only positions.
-    Layer organism_dots_, crate_dots_, obstacle_dots_;
-    Layer density_, radii_, arrows_, targets_, trail_ends_, flashes_;
+    Layers layers_;
+    Reused reused_;
     /// The trail lines between two consecutive snapshots; uploaded once.
     struct TrailSegment {
         std::shared_ptr<const codec::ReceivedSnapshot> from, to;
@@ -111,14 +121,6 @@ class IslandRenderer {
     double full_health_ = 100;    // in the uploaded snapshot; see health_scale()
     std::optional<ColourScale> density_scale_;
     double density_cell_px_ = 1;
-    std::vector<Shape> discs_;                // the organisms in this frame
-    std::vector<Shape> shapes_, food_shapes_; // buffers, reused for every layer
-    std::vector<Line> lines_;
-    std::vector<Colour> colours_;
-    ColouredLines arrow_lines_, target_lines_;
-    std::vector<std::size_t> labelled_; // indices of the organisms with a number
-    std::vector<std::size_t> named_;    // indices of those whose label contains the id, too
-    std::vector<HealthLabel> labels_;
 };
 
 } // namespace evod::viewer

@@ -1,13 +1,13 @@
 #include "client/viewer/island/island_view.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace evod::viewer {
 
 namespace {
 
 constexpr double dots_radius_pixels = 2; // organisms smaller than this are streamed as dots
+constexpr double follow_zoom_factor = 2; // of a camera that shows the whole island, when it begins to follow
 
 } // namespace
 
@@ -16,50 +16,31 @@ ViewOptions default_options(Look look) {
     return {.look = look, .trails = vivid, .flashes = vivid, .radii = vivid ? Which::Pointed : Which::None};
 }
 
-// ---- the region ------------------------------------------------------------------------------------------------
-
-std::optional<evod::v1::View> StreamedRegion::update(const Camera& camera, evod::v1::Detail detail,
-                                                     Clock::time_point now) {
-    const Rectangle visible = camera.visible();
-    const bool covered = region_ && region_->contains({visible.left, visible.top}) &&
-                         region_->contains({visible.left + visible.width, visible.top + visible.height});
-    const bool is_far_too_large = region_ && region_->width > 6 * visible.width;
-    if ((covered && !is_far_too_large && detail == detail_) || (region_ && now - changed_ < interval)) {
-        return std::nullopt;
-    }
-    region_ = {visible.left - visible.width / 2, visible.top - visible.height / 2, 2 * visible.width,
-               2 * visible.height};
-    detail_ = detail;
-    changed_ = now;
-    evod::v1::View view;
-    view.mutable_region()->set_left_px(region_->left);
-    view.mutable_region()->set_top_px(region_->top);
-    view.mutable_region()->set_width_px(region_->width);
-    view.mutable_region()->set_height_px(region_->height);
-    view.set_detail(detail);
-    return view;
+const std::vector<std::string>& IslandView::gene_names() const {
+    static const std::vector<std::string> unknown;
+    return feed_ != nullptr ? feed_->gene_names() : unknown;
 }
 
-void IslandView::update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now) {
-    if (world.feed.all_islands()) { // a view would restrict the snapshots of all islands
-        region_.forget();
+void IslandView::add(const Camera& camera, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot) {
+    if (snapshot == added_) {
         return;
     }
-    const auto& about = snapshot_->about;
-    in_part_ = in_part_ || std::max(about.organism_count(), about.live().organism_count()) >= streamed_in_part_min;
-    if (!in_part_) {
-        return;
+    added_ = snapshot;
+    trails_.add(snapshot);
+    if (options.flashes && shows_traces(camera, *snapshot)) {
+        flashes_.add(snapshot);
+    } else {
+        flashes_.clear();
     }
-    const bool details_of_all = (options.radii == Which::All || options.forces == Which::All) && shows_details(camera);
-    const bool no_single_organism_matters =
-        options.colour_by == ColourBy::Nothing && !details_of_all && !world.feed.selected();
-    const bool small = typical_radius_px * camera.zoom() < dots_radius_pixels;
-    const auto detail = shows_density(camera, *snapshot_)     ? evod::v1::DETAIL_DENSITY
-                        : small && no_single_organism_matters ? evod::v1::DETAIL_DOTS
-                                                              : evod::v1::DETAIL_FULL;
-    if (auto view = region_.update(camera, detail, now)) {
-        world.feed.set_view(std::move(view));
-    }
+}
+
+// ---- what is drawn ---------------------------------------------------------------------------------------------
+
+IslandData::Needs IslandView::needs(bool points_at) const {
+    const SelectedOrganism* selected = data_ != nullptr ? data_->selected_organism() : nullptr;
+    const bool any_pointed = points_at || (selected != nullptr && !selected->ended());
+    const auto drawn = [&](Which which) { return which == Which::All || (which == Which::Pointed && any_pointed); };
+    return {.genes = options.colour_by == ColourBy::Gene || drawn(options.radii), .forces = drawn(options.forces)};
 }
 
 bool IslandView::shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const {
@@ -71,243 +52,27 @@ bool IslandView::shows_density(const Camera& camera, const codec::ReceivedSnapsh
            too_many_for_dots(camera, island, count);
 }
 
-// ---- requests --------------------------------------------------------------------------------------------------
-
-PopulationPoll::Of IslandView::population_of(const ViewedWorld& world) const {
-    return {world.feed.world(), shown_.run_id, world.feed.island(), gene_names_.size()};
-}
-
-bool IslandView::needs_population(bool points_at) const {
-    const bool any_pointed = points_at || (organism_history_ && !organism_history_->ended());
-    const auto drawn = [&](Which which) { return which == Which::All || (which == Which::Pointed && any_pointed); };
-    const bool forces = drawn(options.forces);
-    const bool current_needed =
-        options.colour_by == ColourBy::Gene || options.colour_by == ColourBy::Lineage || lineage_wanted_ ||
-        drawn(options.radii) || forces ||
-        (organism_history_ && (organism_history_->waits_for_children() ||
-                               (!organism_history_->ended() && organism_history_->ranges().empty())));
-    if (!current_needed || population_poll_.is_unsupported() || gene_names_.empty()) {
-        return false;
-    }
-    const bool complete = // organisms may have been placed since the population was requested
-        population() != nullptr && population()->size() >= snapshot_->about.live().organism_count();
-    return !complete || (forces && population_tick_ != tick_);
-}
-
-void IslandView::take_lineage(std::uint32_t island) {
-    if (lineage_is_current()) {
-        return;
-    }
-    lineage_version_ = lineage().version();
-    lineage_bases_ = lineage_bases(lineage(), island);
-    if (const Population* complete = population_poll_.complete()) {
-        find_families(*complete, island);
-    }
-}
-
-/// Counts the lineages from the generation that the lineage data choose. Without these data, counts them from the first
-/// generation. While the generation of the population is not yet in the lineage data, the lineages are unknown.
-void IslandView::find_families(const Population& population, std::uint32_t island) {
-    const std::uint64_t generation = population.generation(), since_before = families_since_;
-    if (lineage().contains(generation)) {
-        families_since_ = lineage_base_of(generation);
-        families_ = Families{ancestors_of(lineage(), generation, island, families_since_)};
-    } else if (lineage().empty() || generation < lineage().first()) {
-        families_since_ = 1;
-        families_ = population.families();
-    } else {
-        families_ = {};
-        return;
-    }
-    if (families_since_ != since_before || coloured_run_ != shown_.run_id) {
-        family_colours_ = {}; // founders have other numbers
-        coloured_run_ = shown_.run_id;
-    }
-    family_colours_.update(families_);
-}
-
-void IslandView::take_population(std::uint32_t island) {
-    const Population* complete = population_poll_.complete();
-    if (complete == nullptr) {
-        return;
-    }
-    if (taken_count_ != population_poll_.complete_count()) {
-        taken_count_ = population_poll_.complete_count();
-        find_families(*complete, island);
-    }
-    if (organism_history_) {
-        organism_history_->add(*complete);
-    }
-}
-
-void IslandView::request_organism(ViewedWorld& world, Clock::time_point now) {
-    organism_tick_ = tick_;
-    evod::v1::Request request;
-    request.mutable_get_organism()->set_world(world.feed.world());
-    request.mutable_get_organism()->set_island(world.feed.island());
-    request.mutable_get_organism()->set_organism(organism_history_->id());
-    organism_poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
-        if (response != nullptr && organism_history_) {
-            organism_history_->add(response->organism());
-            if (response->organism().has_brain()) {
-                organism_poll_.wait(brain_interval);
-            }
-        }
-    });
-}
-
-void IslandView::request_parents(ViewedWorld& world, Clock::time_point now) {
-    auto wanted = organism_history_->wanted_parent();
-    awaits_parents_ = wanted.has_value();
-    if (!wanted || parents_poll_.is_unsupported() || !parents_poll_.due(world, now)) {
-        return;
-    }
-    wanted->set_world(world.feed.world());
-    wanted->set_island(world.feed.island());
-    evod::v1::Request request;
-    *request.mutable_get_breeding() = *wanted;
-    parents_poll_.send(world, std::move(request), now, [this, wanted = *wanted](const evod::v1::Response* response) {
-        if (response != nullptr && organism_history_) {
-            organism_history_->add(wanted, response->breeding());
-        }
-    });
-}
-
-// ---- the selection in other generations --------------------------------------------------------------------------
-
-void IslandView::go_to(ViewedWorld& world, const OrganismPlace& organism) {
-    kept_ = Kept{.run_id = shown_.run_id, .organism = organism, .followed = true, .out_of_sight = true};
-    world.feed.select(std::nullopt);
-    const bool shown = organism.island == world.feed.island() && organism.generation == generation_ && snapshot_ &&
-                       snapshot_->entities->organisms.index_of(organism.id).has_value();
-    if (shown) {
-        return;
-    }
-    world.feed.choose_island(organism.island);
-    world.show_generation(organism.generation);
-}
-
-/// Remembers the selection, or restores it when its generation is on the screen again.
-void IslandView::keep_selection(ViewedWorld& world) {
-    if (const auto selected = world.feed.selected()) {
-        kept_ = Kept{.run_id = shown_.run_id,
-                     .organism = {world.feed.island(), generation_, *selected},
-                     .followed = followed_.has_value()};
-    } else if (kept_ && !kept_->out_of_sight) { // the user cleared the selection
-        kept_.reset();
-    } else if (kept_ && kept_->run_id == shown_.run_id && kept_->organism.island == world.feed.island() &&
-               kept_->organism.generation == generation_ && world.replay.target() == nullptr) {
-        kept_->out_of_sight = false;
-        world.feed.select(kept_->organism.id);
-        if (kept_->followed) {
-            followed_ = Followed{.id = kept_->organism.id};
-        }
-    }
-}
-
-// ---- snapshots -------------------------------------------------------------------------------------------------
-
-void IslandView::forget() {
-    IslandView fresh;
-    fresh.options = options;
-    fresh.lineage_poll_ = std::move(lineage_poll_);
-    // Lineages keep their colours on other islands and in replays of the run.
-    fresh.families_since_ = families_since_;
-    fresh.family_colours_ = family_colours_;
-    fresh.coloured_run_ = std::move(coloured_run_);
-    fresh.kept_ = std::move(kept_);
-    if (fresh.kept_) {
-        fresh.kept_->out_of_sight = true;
-    }
-    *this = std::move(fresh);
-}
-
-void IslandView::take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
-                               const Camera& camera) {
-    const auto& about = snapshot->about;
-    if (shown_.run_id != about.run_id()) {
-        if (!shown_.run_id.empty()) { // the world was reset
-            world.feed.select(std::nullopt);
-            world.feed.set_view(std::nullopt);
-            forget();
-            kept_.reset();
-        }
-        shown_ = {world.feed.place_number(), about.run_id()};
-    }
-    snapshot_ = snapshot;
-    generation_ = about.generation();
-    tick_ = about.tick();
-    if (organism_history_) {
-        organism_history_->add(*snapshot);
-        if (organism_history_->ended() && world.feed.selected() == organism_history_->id()) {
-            world.feed.select(std::nullopt); // the id now belongs to another organism
-            if (kept_) {
-                kept_->out_of_sight = true;
-            }
-        }
-    }
-    trails_.add(snapshot);
-    if (options.flashes && shows_traces(camera, *snapshot)) {
-        flashes_.add(snapshot);
-    } else {
-        flashes_.clear();
-    }
-}
-
-void IslandView::update(ViewedWorld& world, const Camera& camera, Clock::time_point now, bool points_at) {
-    if (shown_.number != world.feed.place_number()) {
-        forget();
-        shown_.number = world.feed.place_number();
-    }
-    const auto& snapshot = world.feed.view().latest();
-    if (!snapshot) {
-        return;
-    }
-    if (snapshot != snapshot_) {
-        take_snapshot(world, snapshot, camera);
-    }
-    if (gene_names_ != world.feed.gene_names()) {
-        gene_names_ = world.feed.gene_names();
-        gene_groups_ = world.feed.gene_groups();
-    }
-    keep_selection(world);
-    if (const auto selected = world.feed.selected();
-        selected && (!organism_history_ || organism_history_->id() != *selected || organism_history_->ended())) {
-        organism_history_.emplace(*selected, generation_);
-        organism_history_->add(*snapshot);
-        organism_poll_.reset();
-        parents_poll_.reset();
-        organism_tick_ = ~std::uint64_t{0};
-    }
-    lineage_poll_->update(world, lineage_wanted_ || options.colour_by == ColourBy::Lineage, now);
-    take_lineage(world.feed.island());
-    take_population(world.feed.island());
-    const bool population_wanted = needs_population(points_at);
-    lineage_wanted_ = false;
-    if (population_poll_.update(world, population_of(world), population_wanted, now)) {
-        population_tick_ = tick_;
-    }
-    const bool alive = organism_history_ && !organism_history_->ended() && !organism_history_->dead();
-    if (organism_poll_.due(world, now) && alive && organism_tick_ != tick_) {
-        request_organism(world, now);
-    }
-    if (organism_history_) {
-        request_parents(world, now);
-    }
-    update_stream(world, camera, now);
+evod::v1::Detail IslandView::detail(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const {
+    const bool details_of_all = (options.radii == Which::All || options.forces == Which::All) && shows_details(camera);
+    const bool selects = feed_ != nullptr && feed_->selected();
+    const bool no_single_organism_matters = options.colour_by == ColourBy::Nothing && !details_of_all && !selects;
+    const bool small = typical_radius_px * camera.zoom() < dots_radius_pixels;
+    return shows_density(camera, snapshot)       ? evod::v1::DETAIL_DENSITY
+           : small && no_single_organism_matters ? evod::v1::DETAIL_DOTS
+                                                 : evod::v1::DETAIL_FULL;
 }
 
 /// The number of genes in the cycle of colourings: those of the body, which come first. Weights of a brain are too
 /// many.
 std::size_t IslandView::cycled_genes() const {
-    const std::size_t body = genes_of(gene_groups_, evod::v1::GENE_GROUP_BODY).count;
-    return body > 0 ? std::min(body, gene_names_.size()) : gene_names_.size();
+    const std::size_t body = feed_ != nullptr ? genes_of(feed_->gene_groups(), evod::v1::GENE_GROUP_BODY).count : 0;
+    return body > 0 ? std::min(body, gene_names().size()) : gene_names().size();
 }
 
 void IslandView::next_colouring() {
     switch (options.colour_by) {
     case ColourBy::Nothing:
-        options.colour_by = gene_names_.empty() ? ColourBy::Health : ColourBy::Gene;
+        options.colour_by = gene_names().empty() ? ColourBy::Health : ColourBy::Gene;
         options.gene = 0;
         break;
     case ColourBy::Gene:
@@ -317,9 +82,6 @@ void IslandView::next_colouring() {
         }
         break;
     case ColourBy::Health:
-        options.colour_by = ColourBy::Lineage;
-        break;
-    case ColourBy::Lineage:
         options.colour_by = ColourBy::Nothing;
         break;
     }
@@ -327,29 +89,39 @@ void IslandView::next_colouring() {
 
 // ---- following -------------------------------------------------------------------------------------------------
 
-void IslandView::toggle_following(ViewedWorld& world) {
-    if (followed_) {
-        followed_.reset();
-    } else if (world.feed.selected()) {
-        followed_ = Followed{.id = *world.feed.selected()};
-    }
-}
-
-void IslandView::follow(ViewedWorld& world, Camera& camera, double blend) {
-    if (!followed_) {
-        return;
-    }
-    const bool moved = followed_->centre && camera.zoom() == followed_->zoom && camera.centre() != *followed_->centre;
-    if (world.feed.selected() != followed_->id || moved || (followed_->centre && camera.fitted())) {
+void IslandView::follow(IslandData& data, const core::SnapshotInterpolator& island, Camera& camera, double blend) {
+    const SelectedOrganism* selected = data.selected_organism();
+    const auto organism = data.followed();
+    if (!organism || feed_ == nullptr || !island.latest()) {
+        if (followed_ && (selected == nullptr || selected->ended())) { // another island or moment is shown
+            camera.fit();
+        }
         followed_.reset();
         return;
     }
-    if (const auto index = world.feed.snapshot()->entities->organisms.index_of(followed_->id)) {
-        const auto [x, y] = world.feed.view().organisms_at(blend)[*index];
+    if (followed_ && followed_->organism != *organism) {
+        followed_.reset();
+    }
+    const auto index = island.latest()->entities->organisms.index_of(*organism);
+    const bool gone = selected == nullptr || selected->ended() || (selected->dead() && !index);
+    const bool moved = followed_ && camera.zoom() == followed_->zoom && camera.centre() != followed_->centre;
+    const bool fitted = followed_ && camera.fitted();
+    if (gone || moved || fitted || feed_->selected() != organism) {
+        data.stop_following();
+        followed_.reset();
+        if (gone) {
+            camera.fit();
+        }
+        return;
+    }
+    if (camera.fitted()) {
+        camera.zoom_at(camera.viewport().centre(), follow_zoom_factor);
+    }
+    if (index) {
+        const auto [x, y] = island.organisms_at(blend)[*index];
         camera.look_at({x, y});
     }
-    followed_->centre = camera.centre();
-    followed_->zoom = camera.zoom();
+    followed_ = Followed{.organism = *organism, .centre = camera.centre(), .zoom = camera.zoom()};
 }
 
 } // namespace evod::viewer

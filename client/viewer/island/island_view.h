@@ -1,20 +1,15 @@
-// IslandView: how a pane shows its chosen island: the view options, the data that these options need from the server,
-// the selected and followed organism, and the region that is streamed.
+// IslandView: how an island is shown: the view options, the trails and flashes of its snapshots, and the camera that
+// follows an organism.
 //
-// Owner        Pane.
+// Owner        WorldView.
 // Threads      none; used by the thread that draws.
 #pragma once
 
 #include "client/viewer/island/flashes.h"
 #include "client/viewer/island/marks.h"
-#include "client/viewer/world/lineage_base.h"
-#include "client/viewer/world/lineage_poll.h"
-#include "client/viewer/world/organism_history.h"
-#include "client/viewer/world/population_poll.h"
-#include "client/viewer/world/viewed_world.h"
+#include "client/viewer/world/island_data.h"
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -47,162 +42,57 @@ struct ViewOptions {
 /// The options with which a look is shown at first. The classic skin shows organisms, items and walls only.
 ViewOptions default_options(Look look);
 
-/// Chooses the region and the level of detail in which a large island is streamed. The region is twice as wide and high
-/// as the visible part, so that a small pan stays inside it. The region changes at most once per `interval`.
-class StreamedRegion {
-  public:
-    using Clock = core::SnapshotInterpolator::Clock;
-    static constexpr std::chrono::milliseconds interval{200};
-
-    /// Returns the view to request now; nullopt if the view returned last is still suitable.
-    std::optional<evod::v1::View> update(const Camera& camera, evod::v1::Detail detail, Clock::time_point now);
-    void forget() { *this = StreamedRegion{}; }
-
-  private:
-    std::optional<Rectangle> region_;
-    evod::v1::Detail detail_ = evod::v1::DETAIL_UNSPECIFIED;
-    Clock::time_point changed_{};
-};
-
-/// Identifies an organism of a run. Every generation uses the same ids.
-struct OrganismPlace {
-    std::uint32_t island = 0;
-    std::uint64_t generation = 0;
-    std::uint32_t id = 0;
-};
-
 class IslandView {
   public:
-    using Clock = core::SnapshotInterpolator::Clock;
+    /// An island of which only the snapshots are known.
+    IslandView() = default;
+    /// The chosen island. `feed` and `data` must outlive this object.
+    IslandView(const WorldFeed& feed, const IslandData& data) : feed_{&feed}, data_{&data} {}
 
     ViewOptions options;
-    /// Switches to the next colouring in this cycle: nothing, each gene, health, lineage.
+    /// Switches to the next colouring in this cycle: nothing, each gene of the body, health.
     void next_colouring();
 
-    /// Islands with at least this many organisms per generation are streamed in part. Smaller islands are streamed
-    /// whole.
-    static constexpr std::uint32_t streamed_in_part_min = 5'000;
+    /// Adds the newest snapshot to the trails and the flashes, unless it was added before.
+    void add(const Camera& camera, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot);
+    /// Keeps the followed organism in the centre, as far as the camera stays on the island. Following ends when the
+    /// user moves the camera or selects another organism. If the organism is gone, shows the whole island.
+    ///
+    /// island  the snapshots of the chosen island
+    void follow(IslandData& data, const core::SnapshotInterpolator& island, Camera& camera, double blend);
 
-    /// Reads the newest snapshot, requests the data that the options need, and moves the streamed region.
+    /// Returns what the options need of the population.
     ///
     /// points_at  whether the mouse points at an organism
-    void update(ViewedWorld& world, const Camera& camera, Clock::time_point now, bool points_at = false);
-
-    /// Keeps the followed organism in the centre. Following ends when the user moves the camera or the organism dies.
-    void follow(ViewedWorld& world, Camera& camera, double blend);
-    bool following() const { return followed_.has_value(); }
-    /// Starts following the selected organism, or stops following it.
-    void toggle_following(ViewedWorld& world);
-
-    /// Selects and follows an organism of any generation of the run. If it is not on the screen, shows its island, and
-    /// opens a replay at the start of its generation or seeks there. The organism is selected when its generation
-    /// appears.
-    void go_to(ViewedWorld& world, const OrganismPlace& organism);
-    /// Returns whether parents of the selected organism are being requested.
-    bool awaits_parents() const { return awaits_parents_ && parents_poll_.problem().empty(); }
-
-    // Functions that return data received from the server or derived from it.
-    const std::vector<std::string>& gene_names() const { return gene_names_; }
-    const GeneGroups& gene_groups() const { return gene_groups_; }
-    /// Returns the population of the newest snapshot's island and generation; null until it has been received.
-    const Population* population() const {
-        const Population* complete = population_poll_.complete();
-        return complete != nullptr && complete->generation() == generation_ ? complete : nullptr;
-    }
-    /// Returns why the population is unknown, as a sentence. Empty if it is known or has been requested.
-    std::string problem() const { return population_poll_.problem(); }
-    /// Returns the lineages of population(), and the generation of the ancestors from which they are counted. The
-    /// number of a founder is its index in this generation, counted island after island.
-    const Families& families() const { return families_; }
-    std::uint64_t families_since() const { return families_since_; }
-    /// Returns whether lineage_base_of() knows every generation in lineage(). Not between an answer of the server and
-    /// the next update().
-    bool lineage_is_current() const {
-        return lineage_version_ == lineage().version() && lineage_bases_.empty() == lineage().empty();
-    }
-    /// Returns the generation from which the lineages of a generation in lineage() are counted.
-    std::uint64_t lineage_base_of(std::uint64_t generation) const {
-        return lineage_bases_[generation - lineage().first()];
-    }
-    const FamilyColours& family_colours() const { return family_colours_; }
-    /// Returns the parents of all organisms of the run, as far as they have been received. They are requested to colour
-    /// organisms by lineage, and while want_lineage() is called in every frame.
-    const Lineage& lineage() const { return lineage_poll_->lineage(); }
-    const std::string& lineage_problem() const { return lineage_poll_->problem(); }
-    void want_lineage() { lineage_wanted_ = true; }
-    const Trails& trails() const { return trails_; }
-    const Flashes& flashes() const { return flashes_; }
-    /// Returns the history of the organism that was selected last, even after its generation has ended. Null if no
-    /// organism has been selected.
-    const OrganismHistory* organism_history() const { return organism_history_ ? &*organism_history_ : nullptr; }
+    IslandData::Needs needs(bool points_at) const;
     /// Returns whether densities are shown because the visible organisms are too small and too many.
     bool shows_density(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const;
+    /// Returns the level of detail in which a large island is streamed.
+    evod::v1::Detail detail(const Camera& camera, const codec::ReceivedSnapshot& snapshot) const;
+
+    const std::vector<std::string>& gene_names() const;
+    /// Returns the population that is shown; null until it has been received.
+    const Population* population() const { return data_ != nullptr ? data_->population() : nullptr; }
+    /// Returns why the population is unknown, as a sentence. Empty if it is known or has been requested.
+    std::string problem() const { return data_ != nullptr ? data_->problem() : ""; }
+    const Trails& trails() const { return trails_; }
+    const Flashes& flashes() const { return flashes_; }
 
   private:
-    static constexpr std::chrono::milliseconds poll_interval{250}; // for requests of values that change often
-    static constexpr std::chrono::milliseconds brain_interval{40}; // for the activations of the selected organism
-
-    /// The place (world and island) and the run that are shown. When one changes, all older data are cleared.
-    struct Shown {
-        std::uint64_t number = 0; // WorldFeed::place_number()
-        std::string run_id;       // empty until the first snapshot arrives
-        friend bool operator==(const Shown&, const Shown&) = default;
-    };
-    PopulationPoll::Of population_of(const ViewedWorld& world) const;
     std::size_t cycled_genes() const;
-    bool needs_population(bool points_at) const;
-    void forget();
-    void take_snapshot(ViewedWorld& world, const std::shared_ptr<const codec::ReceivedSnapshot>& snapshot,
-                       const Camera& camera);
-    void take_lineage(std::uint32_t island);
-    void take_population(std::uint32_t island);
-    void find_families(const Population& population, std::uint32_t island);
-    void request_organism(ViewedWorld& world, Clock::time_point now);
-    void request_parents(ViewedWorld& world, Clock::time_point now);
-    void keep_selection(ViewedWorld& world);
-    void update_stream(ViewedWorld& world, const Camera& camera, Clock::time_point now);
 
-    Shown shown_;
-    std::uint64_t generation_ = 0, tick_ = 0;                 // generation and tick of the newest snapshot
-    std::shared_ptr<const codec::ReceivedSnapshot> snapshot_; // the newest snapshot
-
-    std::vector<std::string> gene_names_;
-    GeneGroups gene_groups_;
-    PopulationPoll population_poll_{poll_interval};
-    Poll organism_poll_{poll_interval};
-    Poll parents_poll_;
-    bool awaits_parents_ = false;
-    std::uint64_t taken_count_ = 0;                         // complete populations received
-    std::uint64_t population_tick_ = 0, organism_tick_ = 0; // tick of the newest snapshot at the time of each request
-    Families families_;
-    std::uint64_t families_since_ = 1;
-    FamilyColours family_colours_;
-    std::string coloured_run_; // the run to which these colours belong
-    bool lineage_wanted_ = false;
-    std::unique_ptr<LineagePoll> lineage_poll_ = std::make_unique<LineagePoll>(); // kept for replays of the same run
-    std::vector<std::uint64_t> lineage_bases_;
-    std::uint64_t lineage_version_ = 0; // of the lineage, at the last update of lineage_bases_
+    const WorldFeed* feed_ = nullptr;
+    const IslandData* data_ = nullptr;
+    std::shared_ptr<const codec::ReceivedSnapshot> added_;
     Trails trails_;
     Flashes flashes_;
-    std::optional<OrganismHistory> organism_history_;
-
+    /// The camera after the last follow().
     struct Followed {
-        std::uint32_t id = 0;
-        std::optional<Point> centre{}; // centre of the camera set by the last follow()
+        std::uint32_t organism = 0;
+        Point centre;
         double zoom = 0;
     };
     std::optional<Followed> followed_;
-
-    /// The selection. It is restored when its generation is on the screen again, for example after a seek.
-    struct Kept {
-        std::string run_id;
-        OrganismPlace organism;
-        bool followed = false;
-        bool out_of_sight = false; // another generation, island or world is shown
-    };
-    std::optional<Kept> kept_;
-    StreamedRegion region_;
-    bool in_part_ = false; // whether the island is large and therefore streamed in part
 };
 
 } // namespace evod::viewer

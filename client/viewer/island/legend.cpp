@@ -10,48 +10,6 @@
 
 namespace evod::viewer {
 
-namespace {
-
-/// The organism that founded a family, such as "organism 12 of island 1".
-std::string founder_text(const IslandView& island_view, std::uint32_t founder) {
-    const Lineage& lineage = island_view.lineage();
-    const std::uint64_t since = island_view.families_since();
-    if (!lineage.contains(since) || lineage.at(since).begins.size() < 2) {
-        return "organism " + std::to_string(founder);
-    }
-    const Lineage::Place place = lineage.place_of(since, founder);
-    return "organism " + std::to_string(place.organism) + " of island " + std::to_string(place.island);
-}
-
-void add_families(const IslandView& island_view, const Population& population, Legend& legend) {
-    const Families& families = island_view.families();
-    if (families.shown().empty()) {
-        legend.entries.push_back({palette::unknown, island_view.lineage().empty()
-                                                        ? "lineages unknown: the server does not send them"
-                                                        : "lineages not known yet"});
-        return;
-    }
-    legend.title = "lineages, counted from generation " + with_separators(island_view.families_since());
-    std::size_t others = families.size();
-    for (std::uint8_t family = 0; family < families.shown().size(); ++family) {
-        const auto& [founder, size] = families.shown()[family];
-        legend.entries.push_back(
-            {island_view.family_colours().of(family),
-             "descendants of " + founder_text(island_view, founder) + ": " + with_separators(size)});
-        others -= size;
-    }
-    if (families.count() > families.shown().size()) {
-        legend.entries.push_back({palette::unknown, with_separators(families.count() - families.shown().size()) +
-                                                        " smaller lineages: " + with_separators(others)});
-    }
-    if (population.size() > families.size()) {
-        legend.entries.push_back({palette::unknown, "placed by a user, and their descendants: " +
-                                                        with_separators(population.size() - families.size())});
-    }
-}
-
-} // namespace
-
 std::string gene_title(const std::string& name) {
     return name + (name == "food_radius" || name == "poison_radius" ? ", px"
                    : name.find('<') != std::string::npos            ? "" // a weight
@@ -79,14 +37,8 @@ Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& s
                            gene_scale(*population, island_view.options.gene, island_view.options.ramp)};
         }
         break;
-    case ColourBy::Lineage:
-        if (population != nullptr) {
-            add_families(island_view, *population, legend);
-        }
-        break;
     }
     const bool needs_population = island_view.options.colour_by == ColourBy::Gene ||
-                                  island_view.options.colour_by == ColourBy::Lineage ||
                                   island_view.options.radii == Which::All || island_view.options.forces != Which::None;
     if (needs_population && population == nullptr && !island_view.problem().empty()) {
         legend.entries.push_back({palette::unknown, island_view.problem()});
@@ -118,11 +70,10 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui, Lo
                 swatch = 12 * pixel, gap = 6 * pixel;
     const ImFont& font = gui.label();
     float width = legend.ramp ? std::max(bar_width, size_of(legend.ramp->title, font).x) : 0;
-    width = std::max(width, size_of(legend.title, font).x);
     for (const Legend::Entry& entry : legend.entries) {
         width = std::max(width, size_of(entry.text, font).x + swatch + gap);
     }
-    const float height = (legend.ramp ? 2 * line + bar_height + 4 * pixel : 0) + (legend.title.empty() ? 0 : line) +
+    const float height = (legend.ramp ? 2 * line + bar_height + 4 * pixel : 0) +
                          static_cast<float>(legend.entries.size()) * line + 2 * inside;
     const Rectangle& viewport = camera.viewport();
     const ImVec2 corner{std::floor(static_cast<float>(viewport.left)) + 12 * pixel,
@@ -142,10 +93,6 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui, Lo
         top += bar_height + 4 * pixel;
         write(list, font, {left, top}, colours.label, shown_number(scale.low));
         write_to_the_left(list, font, {left + bar_width, top}, colours.label, shown_number(scale.high));
-        top += line;
-    }
-    if (!legend.title.empty()) {
-        write(list, font, {left, top}, colours.label, legend.title);
         top += line;
     }
     for (const Legend::Entry& entry : legend.entries) {

@@ -27,7 +27,6 @@ struct Legend {
         ShapeStyle Styles::*mark = &Styles::coloured; // the mark that the text explains
     };
     std::optional<Ramp> ramp;
-    std::string title; // of the entries; may be empty
     std::vector<Entry> entries;
     bool empty() const { return !ramp && entries.empty(); }
 };

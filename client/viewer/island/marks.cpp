@@ -76,33 +76,6 @@ ColourScale gene_scale(const Population& population, std::size_t gene, palette::
     return {ramp, range.min, range.max};
 }
 
-void FamilyColours::update(const Families& of) {
-    const auto& families = of.shown();
-    for (auto& place : places_) {
-        if (place && std::ranges::find(families, *place, &Families::Family::founder) == families.end()) {
-            place.reset();
-        }
-    }
-    for (std::size_t i = 0; i < families.size(); ++i) {
-        auto place = std::ranges::find(places_, std::optional{families[i].founder});
-        if (place == places_.end()) {
-            place = std::ranges::find_if(places_, [](const auto& founder) { return !founder; });
-            *place = families[i].founder;
-        }
-        colours_[i] = static_cast<std::uint8_t>(place - places_.begin());
-    }
-}
-
-Colour FamilyColours::of(std::uint8_t family) const {
-    return family < colours_.size() ? palette::lineages[colours_[family]] : palette::unknown;
-}
-
-Colour FamilyColours::of_founder(std::uint32_t founder) const {
-    const auto place = std::ranges::find(places_, std::optional{founder});
-    return place == places_.end() ? palette::unknown
-                                  : palette::lineages[static_cast<std::size_t>(place - places_.begin())];
-}
-
 void add_discs(const Positions& organisms, std::vector<Shape>& discs) {
     const std::size_t begin = discs.size(), count = organisms.size();
     discs.resize(begin + count);
@@ -147,13 +120,6 @@ void add_gene_colours(const codec::Entities& organisms, const Population& popula
     const auto values = population.gene(gene);
     for (const std::uint32_t id : organisms.id) {
         colours.push_back(id < values.size() ? table(values[id]) : palette::unknown);
-    }
-}
-
-void add_family_colours(const codec::Entities& organisms, const Families& families, const FamilyColours& of_family,
-                        std::vector<Colour>& colours) {
-    for (const std::uint32_t id : organisms.id) {
-        colours.push_back(of_family.of(families.of(id)));
     }
 }
 

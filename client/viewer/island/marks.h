@@ -25,7 +25,7 @@ namespace evod::viewer {
 using core::Positions;
 
 /// The property that determines the colours of organisms.
-enum class ColourBy { Nothing, Gene, Health, Lineage };
+enum class ColourBy { Nothing, Gene, Health };
 
 /// Returns whether `next` continues what `last` showed: same world, run, island and generation, and no earlier tick.
 bool continues(const evod::v1::SnapshotFrame& next, const evod::v1::SnapshotFrame& last);
@@ -36,24 +36,6 @@ ColourScale health_scale(const codec::Entities& organisms, palette::Ramp ramp);
 
 /// Returns a colour scale from the lowest to the highest value of the gene in the population.
 ColourScale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp);
-
-/// Assigns colours to families. A family keeps its colour over generations as long as it is among the largest.
-class FamilyColours {
-  public:
-    /// Keeps the colours of known families and assigns free colours to new ones.
-    void update(const Families& families);
-    /// Returns the colour of a family. `family` is an index in shown() of the families passed to the last
-    /// update(), or Families::none.
-    Colour of(std::uint8_t family) const;
-    /// Returns the colour of the family with this founder; palette::unknown if it has none.
-    Colour of_founder(std::uint32_t founder) const;
-
-  private:
-    /// For each colour, the founder of the family that has it.
-    std::array<std::optional<std::uint32_t>, palette::lineages.size()> places_{};
-    /// For each family, the index of its colour.
-    std::array<std::uint8_t, Families::shown_max> colours_{};
-};
 
 /// Adds the disc of each organism. The functions below read positions from these discs, so that each position is
 /// computed once per frame.
@@ -68,12 +50,9 @@ void add_headings(const Positions& organisms, std::span<const Shape> discs, cons
 void set_health(const codec::Entities& organisms, double full_health, std::vector<Shape>& discs);
 
 void add_health_colours(const codec::Entities& organisms, const ColourScale& scale, std::vector<Colour>& colours);
-/// Adds the colour of each organism. An organism that is not in the population or families gets palette::unknown, also
-/// in add_family_colours().
+/// Adds the colour of each organism. An organism that is not in the population gets palette::unknown.
 void add_gene_colours(const codec::Entities& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours);
-void add_family_colours(const codec::Entities& organisms, const Families& families, const FamilyColours& of_family,
-                        std::vector<Colour>& colours);
 
 /// Indices of organisms in a snapshot. Radii and forces are drawn for these organisms; nullopt: for all.
 using Chosen = std::optional<std::vector<std::size_t>>;

@@ -44,7 +44,7 @@ bool is_whole_island_visible(const Camera& camera, double island_width, double i
     return visible.contains({0, 0}) && visible.contains({island_width, island_height});
 }
 
-void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, Look look, int number) {
+void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, Look look) {
     const std::shared_ptr<const codec::ReceivedSnapshot> snapshot =
         world.feed.overview() != nullptr ? world.feed.overview() : world.feed.view().latest();
     const double width = snapshot->about.width_px(), height = snapshot->about.height_px();
@@ -63,12 +63,10 @@ void Minimap::build(ViewedWorld& world, Camera& camera, const Gui& gui, Look loo
     ImGui::SetNextWindowSize(size);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-    const std::string name = "##minimap " + std::to_string(number);
-    ImGui::Begin(name.c_str(), nullptr,
+    ImGui::Begin("##minimap", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing |
                      ImGuiWindowFlags_NoBringToFrontOnFocus);
-    pressed_ = widgets::window_pressed();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 other{corner.x + size.x, corner.y + size.y};
     const palette::IslandColours& colours = palette::of(look);

@@ -10,7 +10,6 @@
 #include "client/viewer/world/viewed_world.h"
 
 #include <memory>
-#include <utility>
 
 namespace evod::viewer {
 
@@ -41,16 +40,11 @@ class Minimap {
   public:
     /// Draws the minimap. If the user presses a point of it, moves the camera there. Call between Gui::begin() and
     /// Gui::draw().
-    ///
-    /// number  the number of the minimap, which differs between the minimaps of a window
-    void build(ViewedWorld& world, Camera& camera, const Gui& gui, Look look, int number);
-    /// Returns whether a mouse button was pressed on the minimap since the last call.
-    bool take_press() { return std::exchange(pressed_, false); }
+    void build(ViewedWorld& world, Camera& camera, const Gui& gui, Look look);
 
   private:
     std::shared_ptr<const codec::ReceivedSnapshot> counted_; // the snapshot whose organisms grid_ counts
     DensityGrid grid_;
-    bool pressed_ = false;
 };
 
 } // namespace evod::viewer

@@ -18,7 +18,7 @@
 namespace evod::viewer {
 
 /// A circle, rectangle, leaf or star: its centre and half size, in px of the world. The half width of a circle, leaf or
-/// star is its radius. The half height of a body is no length but its health, from 0 to 1.
+/// star is its radius. The half height of a body is not a length but its health, from 0 to 1.
 struct Shape {
     float x = 0, y = 0, half_width = 0, half_height = 0;
 };

@@ -16,6 +16,8 @@ std::string_view page_panel_at(unsigned function_key);
 /// none.
 std::string_view page_panel_with(std::string_view widget);
 
+/// "open http://127.0.0.1:7745/#world=default", or how to serve the page if `link` is empty.
+std::string way_to_page(std::string_view link);
 /// "The panel Glass box is in the browser page: open http://127.0.0.1:7745/#world=default and choose Glass box"
 ///
 /// link  to the page; empty: the server serves none that this machine can reach

@@ -1,4 +1,4 @@
-// Panel: a group of widgets in the sidebar, or in a window of its own. It sends queries and commands only through the
+// Panel: a group of widgets in the sidebar. It sends queries and commands only through the
 // ViewedWorld, which uses the public protocol.
 //
 // Owner        Panels.
@@ -9,17 +9,9 @@
 #include "client/viewer/island/island_view.h"
 #include "client/viewer/world/viewed_world.h"
 
-#include <SFML/Window/Keyboard.hpp>
-
-#include <span>
 #include <string_view>
 
 namespace evod::viewer {
-
-class Freezer;
-class MouseTool;
-class NewWorldDialog;
-class RunHistory;
 
 class Panel {
   public:
@@ -28,35 +20,15 @@ class Panel {
         const Gui& gui;
         core::SnapshotInterpolator::Clock::time_point now;
         IslandView& island_view;
-        // Panels sets the following members.
-        const RunHistory* history = nullptr; // of the world
-        Freezer* freezer = nullptr;
-        NewWorldDialog* new_world = nullptr;
-        MouseTool* tool = nullptr;
-        /// Whether this is the first frame after the panel was hidden. A hidden panel receives no events.
+        IslandData& island_data;
+        /// Whether this is the first frame after the panel was hidden; set by Panels. A hidden panel receives no
+        /// events.
         bool just_shown = false;
     };
-    struct Size {
-        float width, height; // in pixels at scale 1
-    };
-
-    /// A key that the panel handles while it has the keyboard focus, and the text that explains it in the help.
-    struct Key {
-        sf::Keyboard::Key key;
-        std::string_view help; // empty: this key has the same effect as the key before it
-        bool control = false, shift = false;
-    };
-
     virtual ~Panel() = default;
 
-    /// The title of the window and of its section in the help: "Parameters".
+    /// The title of the tab: "Parameters".
     virtual std::string_view title() const = 0;
-
-    /// The size of the panel's own window until the user changes it.
-    virtual Size first_size() const { return {400, 480}; }
-
-    /// The keys that the panel handles. While the panel has the focus, all other keys still go to the main window.
-    virtual std::span<const Key> keys() const { return {}; }
 
     /// Builds the widgets. Called between ImGui::Begin() and ImGui::End(), only while the panel is shown.
     virtual void build(Context& context) = 0;

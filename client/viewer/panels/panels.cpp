@@ -2,12 +2,8 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/panels/family_tree/family_tree_panel.h"
-#include "client/viewer/panels/freezer_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
-#include "client/viewer/panels/physics/physics_panel.h"
-#include "client/viewer/panels/plots/plots_panel.h"
 #include "client/viewer/panels/run_panel.h"
 #include "client/viewer/panels/view_panel.h"
 #include "client/viewer/panels/worlds_panel.h"
@@ -35,25 +31,18 @@ ImVec2 size_of(Rectangle place) {
 
 } // namespace
 
-// F1 shows the help, F12 collapses the sidebar. F8 belonged to a panel that is now in the page (page_panels.cpp).
+// F1 shows the help, F12 collapses the sidebar. The other function keys belonged to panels that are now in the page
+// (page_panels.cpp).
 Panels::Panels() {
     places_.push_back({std::make_unique<WorldsPanel>(), 2});
     places_.push_back({std::make_unique<RunPanel>(), 3});
     places_.push_back({std::make_unique<ParametersPanel>(), 4});
     places_.push_back({std::make_unique<ViewPanel>(), 5});
     places_.push_back({std::make_unique<OrganismPanel>(), 6});
-    places_.push_back({std::make_unique<PlotsPanel>(), 7});
-    places_.push_back({std::make_unique<PhysicsPanel>(), 9});
-    places_.push_back({std::make_unique<FreezerPanel>(), 10});
-    places_.push_back({std::make_unique<FamilyTreePanel>(), 11});
     for (const Place& place : places_) {
         titles_.push_back(place.panel->title());
     }
-}
-
-std::size_t Panels::tab() const {
-    const auto found = std::ranges::find(titles_, settings_.tab);
-    return found == titles_.end() ? 0 : static_cast<std::size_t>(found - titles_.begin());
+    show("Parameters");
 }
 
 std::optional<std::size_t> Panels::panel_at(unsigned function_key) const {
@@ -61,26 +50,15 @@ std::optional<std::size_t> Panels::panel_at(unsigned function_key) const {
     return found == places_.end() ? std::nullopt : std::optional{static_cast<std::size_t>(found - places_.begin())};
 }
 
-void Panels::set(SidebarSettings settings) {
-    settings_ = std::move(settings);
-    settings_.tab = titles_[tab()]; // a stored title may be unknown
-}
-
 bool Panels::shown(std::size_t index) const {
-    return index < places_.size() && (places_[index].detached || (index == tab() && !settings_.collapsed));
+    return index == tab_ && !collapsed_;
 }
 
 void Panels::show(std::size_t index) {
-    if (index >= places_.size()) {
-        return;
-    }
-    Place& place = places_[index];
-    place.to_front = true;
-    if (place.detached) {
-        use(index);
-    } else {
-        settings_.tab = titles_[index];
-        settings_.collapsed = false;
+    if (index < places_.size()) {
+        tab_ = index;
+        places_[index].to_front = true;
+        collapsed_ = false;
     }
 }
 
@@ -89,80 +67,16 @@ void Panels::show(std::string_view title) {
     show(static_cast<std::size_t>(found - titles_.begin()));
 }
 
-void Panels::use(std::size_t index) {
-    std::erase(used_, index);
-    used_.push_back(index);
-}
-
-void Panels::set_detached(std::size_t index, bool detached) {
-    places_[index].detached = detached;
-    std::erase(used_, index);
-    if (detached) {
-        used_.push_back(index);
-    } else {
-        show(index);
-    }
-}
-
-bool Panels::close_front() {
-    if (used_.empty()) {
-        return false;
-    }
-    set_detached(used_.back(), false);
-    return true;
-}
-
-bool Panels::handles(const sf::Event::KeyEvent& key) const {
-    return keyboard_ && shown(*keyboard_) && !key.alt && !key.system &&
-           std::ranges::any_of(keys_of(*keyboard_), [&](const Panel::Key& handled) {
-               return handled.key == key.code && handled.control == key.control && handled.shift == key.shift;
-           });
-}
-
-void Panels::begin_session() {
-    Panels fresh;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-        fresh.places_[i].detached = places_[i].detached;
-    }
-    fresh.settings_ = std::move(settings_);
-    fresh.freezer_ = std::move(freezer_);
-    fresh.used_ = std::move(used_);
-    *this = std::move(fresh);
-}
-
 double Panels::width(unsigned window_pixels, double scale) const {
-    if (settings_.collapsed) {
-        return std::round(sidebar_collapsed * scale);
-    }
-    return sidebar_pixels(settings_.width * scale, window_pixels, scale);
+    return collapsed_ ? std::round(sidebar_collapsed * scale) : sidebar_pixels(window_pixels, scale);
 }
 
 void Panels::build(Panel::Context context, Rectangle sidebar) {
-    keyboard_.reset();
-    RunHistory& history = histories_.of(context.world);
-    history.update(context.world, context.now);
-    context.history = &history;
-    context.freezer = &freezer_;
-    context.new_world = &new_world_;
-    context.tool = &tool_;
-    if (context.world.take_new_world_offer()) {
-        if (context.world.server.may_create()) {
-            new_world_.open(true);
-        } else {
-            context.world.server.notice("There is no other world. " + std::string{no_creation_text});
-        }
-    }
-    if (settings_.collapsed) {
+    if (collapsed_) {
         build_collapsed(sidebar, context.gui.scale());
     } else {
         build_sidebar(context, sidebar);
     }
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-        if (places_[i].detached) {
-            build_detached(i, context, sidebar);
-        }
-    }
-    new_world_.build(context);
 }
 
 void Panels::build_collapsed(Rectangle sidebar, float scale) {
@@ -181,26 +95,6 @@ void Panels::build_collapsed(Rectangle sidebar, float scale) {
     ImGui::PopStyleVar();
 }
 
-/// Builds the left edge of the sidebar, which the user drags to change its width.
-void Panels::build_edge(Rectangle sidebar, float scale) {
-    const float grip = 6 * scale;
-    ImGui::SetCursorScreenPos(corner_of(sidebar));
-    ImGui::InvisibleButton("##edge", {grip, static_cast<float>(sidebar.height)});
-    widgets::mark("Width of the sidebar");
-    const bool active = ImGui::IsItemActive();
-    if (active || ImGui::IsItemHovered()) {
-        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-        const ImVec2 corner = corner_of(sidebar);
-        ImGui::GetWindowDrawList()->AddRectFilled(
-            corner, {corner.x + 2 * scale, corner.y + static_cast<float>(sidebar.height)}, ink(palette::focus));
-    }
-    if (active && ImGui::GetIO().MouseDelta.x != 0) {
-        const float window = ImGui::GetIO().DisplaySize.x;
-        const double wanted = window - ImGui::GetIO().MousePos.x;
-        settings_.width = static_cast<float>(sidebar_pixels(wanted, static_cast<unsigned>(window), scale)) / scale;
-    }
-}
-
 void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
     const float scale = context.gui.scale();
     ImGui::SetNextWindowPos(corner_of(sidebar));
@@ -211,9 +105,6 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBringToFrontOnFocus |
                      ImGuiWindowFlags_NoFocusOnAppearing);
-    const ImVec2 begin = ImGui::GetCursorPos();
-    build_edge(sidebar, scale);
-    ImGui::SetCursorPos(begin);
     context.gui.widget_positions().begin_panel("Sidebar");
     summary_.build_title(context.world);
     build_corner(scale);
@@ -223,21 +114,12 @@ void Panels::build_sidebar(Panel::Context& context, Rectangle sidebar) {
     context.gui.widget_positions().begin_panel("Tabs");
     build_tabs(context.gui);
     context.gui.widget_positions().begin_panel({});
-    const std::size_t index = tab();
-    Place& place = places_[index];
-    if (place.detached) {
-        widgets::small_text(std::string{titles_[index]} + " is in a window of its own.");
-        if (widgets::button("Return it to the sidebar")) {
-            set_detached(index, false);
-        }
-    } else {
-        if (std::exchange(place.to_front, false)) {
-            ImGui::SetNextWindowFocus();
-        }
-        ImGui::BeginChild(titles_[index].data());
-        build_panel(index, context);
-        ImGui::EndChild();
+    if (std::exchange(places_[tab_].to_front, false)) {
+        ImGui::SetNextWindowFocus();
     }
+    ImGui::BeginChild(titles_[tab_].data());
+    build_panel(tab_, context);
+    ImGui::EndChild();
     ImGui::End();
     ImGui::PopStyleVar(2);
 }
@@ -257,7 +139,7 @@ void Panels::build_tabs(const Gui& gui) {
             }
             room /= count;
         }
-        const bool chosen = i == tab();
+        const bool chosen = i == tab_;
         ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
         ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
         if (ImGui::Button(titles_[i].data(), {text_width(i) + room, 25 * scale})) {
@@ -273,20 +155,10 @@ void Panels::build_tabs(const Gui& gui) {
     ImGui::PopStyleVar();
 }
 
-/// Builds the small buttons in the upper right corner of the sidebar.
+/// Builds the small button in the upper right corner of the sidebar.
 void Panels::build_corner(float scale) {
-    const float size = 24 * scale, gap = 4 * scale;
-    const bool detached = places_[tab()].detached;
-    ImGui::SameLine(std::max(ImGui::GetWindowContentRegionMax().x - (detached ? size : 2 * size + gap), 0.f));
-    if (!detached) {
-        if (ImGui::Button("↗", {size, size})) {
-            set_detached(tab(), true);
-        }
-        widgets::mark("Own window");
-        widgets::explain(
-            "Moves the panel below to a window of its own, over the worlds. Closing it returns the panel.");
-        ImGui::SameLine(0, gap);
-    }
+    const float size = 24 * scale;
+    ImGui::SameLine(std::max(ImGui::GetWindowContentRegionMax().x - size, 0.f));
     if (ImGui::Button("»", {size, size})) {
         toggle_sidebar();
     }
@@ -301,35 +173,6 @@ void Panels::build_panel(std::size_t index, Panel::Context& context) {
     place.panel->build(context);
     context.gui.widget_positions().begin_panel({});
     place.built = ImGui::GetFrameCount();
-    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows)) {
-        keyboard_ = index;
-    }
-}
-
-void Panels::build_detached(std::size_t index, Panel::Context& context, Rectangle sidebar) {
-    Place& place = places_[index];
-    const float scale = context.gui.scale();
-    const Panel::Size size = place.panel->first_size();
-    const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const float width = std::min(size.width * scale, window.x), height = std::min(size.height * scale, window.y);
-    ImGui::SetNextWindowPos({std::max(static_cast<float>(sidebar.left) - width - 12 * scale, 0.f), 60 * scale},
-                            ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize({width, height}, ImGuiCond_FirstUseEver);
-    if (std::exchange(place.to_front, false)) {
-        ImGui::SetNextWindowFocus();
-    }
-    bool open = true;
-    if (ImGui::Begin(titles_[index].data(), &open, ImGuiWindowFlags_NoCollapse)) {
-        build_panel(index, context);
-    }
-    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) {
-        use(index);
-        keyboard_ = index;
-    }
-    ImGui::End();
-    if (!open) {
-        set_detached(index, false);
-    }
 }
 
 } // namespace evod::viewer

@@ -1,11 +1,9 @@
 #include "client/viewer/panels/parameters_panel.h"
 
-#include "client/viewer/drawing/imgui_keys.h"
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/world/status_text.h"
 
-#include <SFML/Window/Keyboard.hpp>
 #include <imgui.h>
 #include <imgui_internal.h> // TablePushBackgroundChannel()
 
@@ -63,16 +61,25 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
     widgets::note(text + "\n" + words_of(about.effect()).sentence + std::string{more});
 }
 
-} // namespace
-
-std::span<const Panel::Key> ParametersPanel::keys() const {
-    static constexpr Key keys[] = {
-        {.key = sf::Keyboard::Z, .help = "undo your last change", .control = true},
-        {.key = sf::Keyboard::Y, .help = "redo the last undone change", .control = true},
-        {.key = sf::Keyboard::Z, .help = "", .control = true, .shift = true},
-    };
-    return keys;
+/// Builds the heading of a group. Returns whether the group is open.
+bool build_heading(std::string_view title, bool must_open) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, ImGui::GetColorU32(ImGuiCol_Header));
+    if (must_open) { // a group that contains matches, edits or rejected values
+        ImGui::SetNextItemOpen(true);
+    }
+    const std::string name{title};
+    constexpr ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen |
+                                         ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_FramePadding;
+    ImGui::TablePushBackgroundChannel(); // otherwise the column would clip the title
+    const bool open = ImGui::TreeNodeEx(name.c_str(), flags);
+    widgets::mark("group " + name);
+    ImGui::TablePopBackgroundChannel();
+    return open;
 }
+
+} // namespace
 
 void ParametersPanel::build(Context& context) {
     ViewedWorld& world = context.world;
@@ -96,7 +103,7 @@ void ParametersPanel::build(Context& context) {
         widgets::small_text(why, palette::stopped);
     }
     ImGui::BeginDisabled(!may);
-    build_head(context, may);
+    build_head(context);
     ImGui::EndDisabled();
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "search in names, groups and descriptions", search_.data(), search_.size());
@@ -121,7 +128,7 @@ void ParametersPanel::follow(const Context& context) {
         run_id_ = world.feed.control().run_id();
         edits_.forget();
         values_poll_.reset();
-        ++transaction_;
+        ++change_;
         apply_ = false;
         stale_ = true;
     }
@@ -143,7 +150,7 @@ void ParametersPanel::follow(const Context& context) {
         }
     }
     if (edits_.busy() && context.now - sent_ > Poll::answer_timeout) { // the answer is overdue
-        ++transaction_;
+        ++change_;
         stale_ = edits_.answered(nullptr);
     }
     poll(context);
@@ -181,8 +188,8 @@ void ParametersPanel::poll(const Context& context) {
 void ParametersPanel::send(const Context& context, std::optional<evod::v1::Request> request) {
     if (request) {
         sent_ = context.now;
-        context.world.server.send(*std::move(request), [this, transaction = ++transaction_](const auto& response) {
-            if (transaction == transaction_) {
+        context.world.server.send(*std::move(request), [this, change = ++change_](const auto& response) {
+            if (change == change_) {
                 stale_ = edits_.answered(response ? &*response : nullptr) || stale_;
             }
         });
@@ -191,14 +198,8 @@ void ParametersPanel::send(const Context& context, std::optional<evod::v1::Reque
 
 // ---- widgets ---------------------------------------------------------------------------------------------------
 
-void ParametersPanel::build_head(const Context& context, bool may) {
-    const ViewedWorld& world = context.world;
+void ParametersPanel::build_head(const Context& context) {
     const float scale = context.gui.scale();
-    const ImGuiIO& io = ImGui::GetIO();
-    const bool keys =
-        may && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) && !io.WantTextInput && io.KeyCtrl;
-    const bool z = keys && is_key_pressed(ImGuiKey_Z, false), y = keys && is_key_pressed(ImGuiKey_Y, false);
-    const bool undo_key = z && !io.KeyShift, redo_key = y || (z && io.KeyShift);
     const std::size_t count = edits_.edit_count();
     ImGui::BeginDisabled(count == 0 || edits_.busy());
     if (widgets::button("Apply")) {
@@ -210,21 +211,6 @@ void ParametersPanel::build_head(const Context& context, bool may) {
     if (widgets::button("Discard")) {
         edits_.revert_all();
     }
-    ImGui::EndDisabled();
-    ImGui::SameLine(0, 20 * scale);
-    ImGui::BeginDisabled(!edits_.can_undo());
-    if (widgets::button("Undo") || (undo_key && edits_.can_undo())) {
-        send(context, edits_.undo(world.feed.name()));
-    }
-    widgets::explain(
-        "Ctrl+Z: restores the values before your last change, except values that others have changed since.");
-    ImGui::EndDisabled();
-    ImGui::SameLine();
-    ImGui::BeginDisabled(!edits_.can_redo());
-    if (widgets::button("Redo") || (redo_key && edits_.can_redo())) {
-        send(context, edits_.redo(world.feed.name()));
-    }
-    widgets::explain("Ctrl+Shift+Z: applies the last undone change again.");
     ImGui::EndDisabled();
     ImGui::SameLine(0, 20 * scale);
     widgets::checkbox("apply at once", apply_at_once_);
@@ -294,24 +280,6 @@ void ParametersPanel::build_rows(float scale) {
     if (!any) {
         widgets::small_text("No parameter matches.");
     }
-}
-
-/// Builds the heading of a group. Returns whether the group is open.
-bool ParametersPanel::build_heading(std::string_view title, bool must_open) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TableSetBgColor(ImGuiTableBgTarget_RowBg0, ImGui::GetColorU32(ImGuiCol_Header));
-    if (must_open) { // a group that contains matches, edits or rejected values
-        ImGui::SetNextItemOpen(true);
-    }
-    const std::string name{title};
-    constexpr ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen |
-                                         ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_FramePadding;
-    ImGui::TablePushBackgroundChannel(); // otherwise the column would clip the title
-    const bool open = ImGui::TreeNodeEx(name.c_str(), flags);
-    widgets::mark("group " + name);
-    ImGui::TablePopBackgroundChannel();
-    return open;
 }
 
 void ParametersPanel::build_row(const Row& row) {
@@ -438,7 +406,7 @@ void ParametersPanel::build_menu(std::size_t i) {
         return;
     }
     if (ImGui::MenuItem("Discard the edit", nullptr, false, edits_.is_edited(i))) {
-        edits_.revert(i);
+        edits_.edit(i, edits_.requested_value(i));
     }
     widgets::mark("Discard the edit");
     const std::string set_default = "Default: " + to_text(about.default_value());

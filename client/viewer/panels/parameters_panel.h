@@ -1,4 +1,4 @@
-// ParametersPanel: searches, edits, applies and undoes the parameters of the viewed world. The server's registry
+// ParametersPanel: searches, edits and applies the parameters of the viewed world. The server's registry
 // describes the parameters.
 //
 // ParameterEdits stores the edits and the server's answers. ParametersPanel draws them and sends the requests.
@@ -21,8 +21,6 @@ namespace evod::viewer {
 class ParametersPanel : public Panel {
   public:
     std::string_view title() const override { return "Parameters"; }
-    Size first_size() const override { return {560, 600}; }
-    std::span<const Key> keys() const override;
     void build(Context& context) override;
 
   private:
@@ -30,14 +28,13 @@ class ParametersPanel : public Panel {
     void poll(const Context& context);
     void send(const Context& context, std::optional<evod::v1::Request> request);
 
-    void build_head(const Context& context, bool may);
+    void build_head(const Context& context);
     void build_rows(float scale);
     /// A row of the table.
     struct Row {
         std::size_t parameter; // index in the registry
         std::string name;      // the name of its widget for scripts
     };
-    static bool build_heading(std::string_view title, bool must_open);
     void build_row(const Row& row);
     void build_field(const Row& row);
     static void add_label(const Row& row, const evod::v1::ParameterDescription& about);
@@ -54,14 +51,14 @@ class ParametersPanel : public Panel {
     std::string world_;                  // the viewed world
     std::string run_id_;                 // the run to which edits_ belong
     std::uint64_t place_number_ = 0, connected_count_ = 0;
-    Poll registry_poll_;            // requests the registry until it has arrived
-    Poll values_poll_;              // requests the values when they may have changed
-    bool stale_ = true;             // the values may have changed
-    std::uint64_t transaction_ = 0; // number of the last transaction; answers to earlier ones are ignored
-    core::SnapshotInterpolator::Clock::time_point sent_{}; // time of the last transaction, which is never sent again
+    Poll registry_poll_;       // requests the registry until it has arrived
+    Poll values_poll_;         // requests the values when they may have changed
+    bool stale_ = true;        // the values may have changed
+    std::uint64_t change_ = 0; // number of the last request to set values; answers to earlier ones are ignored
+    core::SnapshotInterpolator::Clock::time_point sent_{}; // time of this request, which is never sent again
     std::array<char, 64> search_{};
     bool apply_at_once_ = false;
-    bool apply_ = false; // apply the edits as soon as no transaction is pending
+    bool apply_ = false; // apply the edits as soon as no request is pending
 };
 
 } // namespace evod::viewer

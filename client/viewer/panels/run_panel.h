@@ -16,7 +16,6 @@ namespace evod::viewer {
 class RunPanel : public Panel {
   public:
     std::string_view title() const override { return "Run"; }
-    Size first_size() const override { return {420, 300}; }
     void build(Context& context) override;
 
   private:

@@ -4,46 +4,37 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/island/island_renderer.h"
 #include "client/viewer/island/styles.h"
-#include "client/viewer/panels/new_world_dialog.h"
-#include "client/viewer/panels/plots/figures.h"
-#include "client/viewer/panels/plots/run_history.h"
-#include "client/viewer/world/mouse_tool.h"
+#include "client/viewer/panels/fitness_curve.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 
 namespace evod::viewer {
 
 namespace {
 
-constexpr float curve_height = 84; // pixels at scale 1
-constexpr float text_lines = 5;    // room for the sentences, so that the widgets below them stay in place
-
-/// What a click in an island does, by MouseTool::Kind.
-constexpr std::array<std::string_view, MouseTool::names.size()> explanations{
-    "A click in the island selects the organism there (Esc).",
-    "A click in the island places food. It does not reappear when it is eaten.",
-    "A click in the island places poison. It does not reappear when it is eaten.",
-    "A click in the island places a copy of the selected organism, or of the last organism from the freezer.",
-    "A click in the island removes the organism, food or poison there until the generation ends.",
-};
+constexpr float text_lines = 5; // room for the sentences, so that the widgets below them stay in place
 
 } // namespace
 
 void Summary::build_title(const ViewedWorld& world) {
-    const evod::v1::Replay* replay = world.replay.info();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(replay != nullptr ? replay_label(*replay).c_str() : ("World " + world.feed.name()).c_str());
+    const codec::ReceivedSnapshot* snapshot = world.feed.snapshot();
+    ImGui::TextUnformatted(
+        shown_text(world.feed.name(), world.replay.info(), snapshot != nullptr ? &snapshot->about : nullptr).c_str());
     widgets::mark("World");
 }
 
 void Summary::build(Panel::Context& context, bool complete) {
     if (complete) {
         build_experiment(context);
-        build_curve(context);
+        history_.update(context.world, context.now);
+        if (const auto clicked = build_fitness_curve(history_.generations(), history_.complete(), context.gui)) {
+            context.world.show_generation(*clicked);
+        }
+        widgets::mark("Fitness curve");
     } else {
         ImGui::PushFont(&context.gui.label());
         build_marks(context);
@@ -51,7 +42,6 @@ void Summary::build(Panel::Context& context, bool complete) {
     }
     build_buttons(context);
     build_speed(context.world);
-    build_tools(context);
 }
 
 void Summary::build_experiment(Panel::Context& context) {
@@ -103,36 +93,6 @@ void Summary::build_marks(const Panel::Context& context) {
     widgets::small_text(text.empty() ? "No organism is alive." : text, palette::text);
 }
 
-void Summary::build_curve(const Panel::Context& context) {
-    const History& history = context.history->history();
-    const auto generations = history.table().column(std::nullopt, "generation");
-    Figure figure = fitness_curves({history.table(), std::nullopt, "", history.changes()});
-    Plot& plot = figure.plot;
-    if (plot.series.empty()) {
-        plot.title = history.complete() ? "Fitness: the curve begins when the first generation ends"
-                                        : "Fitness: loading the earlier generations …";
-        plot.marks.clear();
-    } else {
-        plot.title = "Fitness, generation " + shown_number(generations.back());
-        plot.x_label = "generation";
-        plot.note_end = "A click shows this generation in a replay.";
-        plot.counted_x = true;
-    }
-    std::optional<Range> range;
-    for (const Series& series : plot.series) {
-        range = joined(range, range_of(series.raw));
-    }
-    const double least = range ? std::min(range->min, 0.0) : 0, most = range ? range->max : 1;
-    ImGui::PushFont(&context.gui.label());
-    const auto clicked =
-        curve_widget("##fitness", plot, with_room({least, most}, 0.05), curve_height * context.gui.scale());
-    ImGui::PopFont();
-    widgets::mark("Fitness curve");
-    if (clicked) {
-        context.world.show_generation(static_cast<std::uint64_t>(*clicked));
-    }
-}
-
 void Summary::build_buttons(Panel::Context& context) {
     ViewedWorld& world = context.world;
     const float scale = context.gui.scale();
@@ -173,16 +133,8 @@ void Summary::build_buttons(Panel::Context& context) {
         world.replay.fork();
     }
     ImGui::EndDisabled();
-    widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it beside this one."
-                                : no_creation_text);
+    widgets::explain(may_create ? "Creates a world that starts from the tick shown, and shows it." : no_creation_text);
     ImGui::EndDisabled();
-    ImGui::SameLine();
-    ImGui::BeginDisabled(!may_create);
-    if (widgets::button("New …")) {
-        context.new_world->open(false);
-    }
-    ImGui::EndDisabled();
-    widgets::explain(may_create ? new_world_text : no_creation_text);
     if (!why.empty()) {
         widgets::small_text(why, palette::stopped);
     }
@@ -202,8 +154,8 @@ void Summary::build_speed(ViewedWorld& world) {
     double factor = factor_.value_or(max ? 1 : speed.real_time_factor());
     const double least = RunControl::factor_min, most = RunControl::factor_max;
     ImGui::SetNextItemWidth(-rest);
-    if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &factor, &least, &most,
-                            factor < 1000 ? "%.3g × real time" : "%.0f × real time", ImGuiSliderFlags_Logarithmic)) {
+    if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &factor, &least, &most, speed_text(factor).c_str(),
+                            ImGuiSliderFlags_Logarithmic)) {
         factor_ = factor;
     }
     widgets::mark_field("speed", factor);
@@ -232,36 +184,6 @@ void Summary::build_speed(ViewedWorld& world) {
     }
     if (control.info().slowed()) {
         widgets::small_text("The server cannot keep up: simulated time runs slower, no tick is skipped.");
-    }
-}
-
-void Summary::build_tools(const Panel::Context& context) {
-    MouseTool& tool = *context.tool;
-    const OrganismHistory* selected = context.island_view.organism_history();
-    const bool copies = context.world.feed.selected() && selected != nullptr && selected->info();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("Click");
-    for (std::size_t i = 0; i < MouseTool::names.size(); ++i) {
-        const auto kind = static_cast<MouseTool::Kind>(i);
-        const bool chosen = tool.kind() == kind, takes_copy = copies && kind == MouseTool::Kind::Organism;
-        const std::string problem = takes_copy && !tool.model() ? tool.problem(MouseTool::Kind::Food, context.world)
-                                                                : tool.problem(kind, context.world);
-        ImGui::SameLine(0, 4 * context.gui.scale());
-        ImGui::BeginDisabled(!problem.empty());
-        ImGui::PushStyleColor(ImGuiCol_Button, chosen ? ink(palette::focus) : ImGui::GetColorU32(ImGuiCol_Button));
-        ImGui::PushStyleColor(ImGuiCol_Text, chosen ? ink(palette::note_text) : ImGui::GetColorU32(ImGuiCol_Text));
-        const bool pressed = ImGui::Button(MouseTool::names[i].data());
-        widgets::mark("Click: " + std::string{MouseTool::names[i]}); // the panel Organism has a tab with this label
-        if (pressed) {
-            if (takes_copy) {
-                const auto& genes = selected->info()->genes();
-                tool.place({"a copy of organism " + std::to_string(selected->id()), {genes.begin(), genes.end()}});
-            }
-            tool.choose(kind);
-        }
-        ImGui::PopStyleColor(2);
-        ImGui::EndDisabled();
-        widgets::explain(problem.empty() ? explanations[i] : problem);
     }
 }
 

@@ -1,7 +1,6 @@
 // Summary: the top of the sidebar. It explains the focused world to a newcomer and controls its run.
 //
-//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls ·
-//   what a click in the island does
+//   name of the world · what the organisms try to do · what the marks mean · the fitness curve · run controls
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -10,6 +9,7 @@
 #include "client/viewer/island/mark_painter.h"
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/world/experiment.h"
+#include "client/viewer/world/fitness_history.h"
 
 #include <optional>
 #include <string>
@@ -28,12 +28,11 @@ class Summary {
   private:
     void build_experiment(Panel::Context& context);
     void build_marks(const Panel::Context& context);
-    void build_curve(const Panel::Context& context);
     void build_buttons(Panel::Context& context);
     void build_speed(ViewedWorld& world);
-    void build_tools(const Panel::Context& context);
 
     Experiment experiment_;
+    FitnessHistory history_;
     MarkPainter marks_;
     std::optional<double> factor_; // speed shown by the slider while the user drags it
     std::string problem_;          // why the typed speed is refused

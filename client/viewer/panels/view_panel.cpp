@@ -49,8 +49,6 @@ void build_colouring(IslandView& island_view) {
             return gene < genes.size() ? "gene " + genes[gene] : "gene";
         case ColourBy::Health:
             return "health";
-        case ColourBy::Lineage:
-            return "lineage (common ancestor)";
         default:
             return shown.look.skin == Skin::Vivid ? "nothing (shade: health)" : "nothing";
         }
@@ -66,16 +64,10 @@ void build_colouring(IslandView& island_view) {
     if (widgets::begin_drop_down(colouring, name(shown.colour_by, shown.gene).c_str())) {
         choose(ColourBy::Nothing, shown.gene);
         choose(ColourBy::Health, shown.gene);
-        choose(ColourBy::Lineage, shown.gene);
         for (std::size_t gene = 0; gene < genes.size(); ++gene) {
             choose(ColourBy::Gene, gene);
         }
         ImGui::EndCombo();
-    }
-    if (shown.colour_by == ColourBy::Lineage && !island_view.lineage_problem().empty()) {
-        widgets::small_text("Lineages are counted from the first generation. " + island_view.lineage_problem() + ".",
-                            palette::warning);
-        widgets::mark("Lineages from the first generation");
     }
     if (widgets::begin_drop_down("palette", std::string{palette::name_of(shown.ramp)}.c_str())) {
         for (const palette::Ramp ramp : palette::ramps) {
@@ -103,10 +95,10 @@ void ViewPanel::build(Context& context) {
     widgets::checkbox("density map where organisms are too many", island_view.options.density);
     widgets::checkbox("minimap while zoomed in", island_view.options.minimap);
     ImGui::Separator();
-    bool following = island_view.following();
+    bool following = context.island_data.followed().has_value();
     if (context.world.feed.selected() || following) {
         if (widgets::checkbox("keep the selected organism centred (L)", following)) {
-            island_view.toggle_following(context.world);
+            context.island_data.toggle_following(context.world.feed);
         }
     } else {
         widgets::small_text("Click an organism to select it.", palette::text);

@@ -1,7 +1,6 @@
 #include "client/viewer/panels/worlds_panel.h"
 
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/panels/new_world_dialog.h"
 #include "client/viewer/world/status_text.h"
 
 #include <imgui.h>
@@ -41,40 +40,10 @@ void WorldsPanel::build(Context& context) {
         widgets::small_text(list_poll_.problem(), palette::warning);
     }
     build_worlds(world);
-    build_actions(context);
-    build_islands(world);
-}
-
-void WorldsPanel::build_actions(Context& context) {
-    ViewedWorld& world = context.world;
-    const bool may = world.server.may_create();
-    ImGui::BeginDisabled(!may);
-    if (widgets::button("New world …")) {
-        context.new_world->open(false);
-    }
-    widgets::explain(may ? new_world_text : no_creation_text);
-    ImGui::SameLine();
-    const bool live = world.feed.control().known() && world.replay.info() == nullptr;
-    ImGui::BeginDisabled(!live);
-    if (widgets::button("Delete …")) {
-        deleted_ = world.feed.name();
-        ImGui::OpenPopup("delete");
-    }
-    ImGui::EndDisabled();
-    ImGui::EndDisabled();
-    if (!may) {
+    if (!world.server.may_create()) {
         widgets::small_text(no_creation_text, palette::stopped);
     }
-    if (!ImGui::BeginPopup("delete")) {
-        return;
-    }
-    ImGui::Text("Delete the world %s? It ends for all clients.", deleted_.c_str());
-    ImGui::TextDisabled("If the server stores runs, the run file stays in its folder.");
-    if (widgets::button(("Delete " + deleted_).c_str())) {
-        world.remove(deleted_);
-        ImGui::CloseCurrentPopup();
-    }
-    widgets::end_popup_with_cancel();
+    build_islands(world);
 }
 
 void WorldsPanel::refresh() {
@@ -153,7 +122,7 @@ void WorldsPanel::build_worlds(ViewedWorld& world) {
         cell(with_separators(listed.tick()));
         cell(speed_text(listed.speed()) + (listed.slowed() ? " (slower)" : ""));
     }
-    for (const evod::v1::DamagedWorld& listed : damaged_) { // the pane shows the reason
+    for (const evod::v1::DamagedWorld& listed : damaged_) { // the island's place shows the reason
         begin_row(listed.name());
         cell("damaged");
     }

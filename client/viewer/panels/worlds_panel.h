@@ -1,5 +1,5 @@
 // WorldsPanel: lists the worlds of the server and their states. A click shows a world, or another island of the viewed
-// world. Buttons create and delete worlds.
+// world.
 //
 // Owner        Panels.
 // Threads      none; used on the drawing thread.
@@ -18,7 +18,6 @@ namespace evod::viewer {
 class WorldsPanel : public Panel {
   public:
     std::string_view title() const override { return "Worlds"; }
-    Size first_size() const override { return {460, 420}; }
     void build(Context& context) override;
 
   private:
@@ -30,13 +29,11 @@ class WorldsPanel : public Panel {
     void poll(ViewedWorld& world, Clock::time_point now);
     void process_events(const ViewedWorld& world);
     void refresh();
-    void build_actions(Context& context);
     void build_worlds(ViewedWorld& world);
     void build_islands(ViewedWorld& world);
 
     std::vector<evod::v1::WorldInfo> worlds_;
     std::vector<evod::v1::DamagedWorld> damaged_;
-    std::string deleted_;             // the world that the user is asked about
     evod::v1::Statistics statistics_; // statistics of the viewed world
     std::uint64_t place_number_ = 0;  // the place that statistics_ describes
     Poll list_poll_{poll_interval};

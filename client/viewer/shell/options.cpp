@@ -30,12 +30,11 @@ recording steps the world from frame to frame if the role allows it, so that no 
 a world that was running resumes afterwards. Without a display, run both under xvfb-run.
 
   evoview lab.example:7744 --world default
-  evoview --start
   evoview --screenshot out.png --at-tick 600
-  evoview --world default --beside fork --all-islands
+  evoview --world default --all-islands
   evoview --record film.mp4 --past 12 --record-generations 1
 
-Without --server, evoview connects to this machine; if there is no server, it opens the start screen.
+Without --server, evoview connects to this machine. While there is no server, the window tries again.
 
 Exit status: 0 success; 1 no snapshot arrived, a file could not be written, no window could be opened,
 or a line of the script failed; 2 the command line or the script is invalid.)";
@@ -103,15 +102,8 @@ WantedWorld wanted_of(const Options& options, double rate_hz) {
             .replay_generation = options.replay_generation};
 }
 
-ViewOptions view_of(const Options& options, const ViewOptions& stored) {
-    ViewOptions view = stored;
-    if (options.skin && *options.skin != stored.look.skin) {
-        view = default_options({*options.skin, stored.look.background});
-    }
-    if (options.background && view.look.skin == Skin::Vivid) {
-        view.look.background = *options.background;
-    }
-    return view;
+ViewOptions view_of(const Options& options) {
+    return default_options({options.skin.value_or(Skin::Vivid), options.background.value_or(Background::Dark)});
 }
 
 namespace {
@@ -123,18 +115,18 @@ struct Texts {
 
 void add_recording_options(Command& app, command_line::Option recording, Options::Record& record) {
     app.add_option("--record-ticks", &record.ticks,
-                   "stop after this many ticks; default: at the end of the run, or with Ctrl+C")
+                   "Stop after this many ticks; default: at the end of the run, or with Ctrl+C")
         .needs(recording)
         .check(WholeNumber{});
-    app.add_option("--record-generations", &record.generations, "stop when this many more generations have ended")
+    app.add_option("--record-generations", &record.generations, "Stop when this many more generations have ended")
         .needs(recording)
         .check(WholeNumber{.min = 1});
-    app.add_option("--every", &record.every_ticks, "number of ticks between two frames, 1 to 1000000")
+    app.add_option("--every", &record.every_ticks, "Number of ticks between two frames, 1 to 1000000")
         .needs(recording)
         .show_default()
         .check(WholeNumber{1, 1'000'000});
     app.add_option("--fps", &record.fps,
-                   "frames per second of a film, 0.1 to 1000; 60 shows ticks of 1/60 s in real time")
+                   "Frames per second of a film, 0.1 to 1000; 60 shows ticks of 1/60 s in real time")
         .needs(recording)
         .show_default()
         .check(RealNumber{0.1, 1000});
@@ -176,59 +168,48 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Texts texts;
     Command app{"evoview", "evoview: shows the worlds of an evod server in a window", "evoview " EVOD_VERSION};
     app.footer(footer + std::string{"\n\nActions of a script, one per line:\n"} + Script::reference());
-    const auto where =
-        app.add_option("server,--server", &server, "address of the server: HOST, HOST:PORT or [IPV6]:PORT")
-            .environment("EVOD_SERVER")
-            .show_default();
+    app.add_option("server,--server", &server, "Address of the server: HOST, HOST:PORT or [IPV6]:PORT")
+        .environment("EVOD_SERVER")
+        .show_default();
     core::Credentials credentials;
     add_options(app, credentials);
     app.add_option("--world", &options.world,
-                   "name of the world to show; default: the server's only world, or the world \"default\"")
+                   "Name of the world to show; default: the server's only world, or the world \"default\"")
         .environment("EVOD_WORLD");
-    app.add_option("--island", &options.island, "island to show, numbered from 0")
+    app.add_option("--island", &options.island, "Island to show, numbered from 0")
         .show_default()
         .check(WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
-    app.add_flag("--all-islands", &options.all_islands, "show all islands as tiles");
-    app.add_option("--beside", &options.beside, "name of a second world to show in the right half");
-    app.add_option("--past", &options.replay_generation, "start with a replay of the world at this generation")
+    app.add_flag("--all-islands", &options.all_islands, "Show all islands as tiles");
+    app.add_option("--past", &options.replay_generation, "Start with a replay of the world at this generation")
         .check(WholeNumber{.min = 1});
     app.add_option("--size", &texts.size,
-                   "size of the window or image in pixels, WIDTHxHEIGHT; default: 1280x720 times the scale");
+                   "Size of the window or image in pixels, WIDTHxHEIGHT; default: 1280x720 times the scale");
     app.add_option("--scale", &options.scale,
-                   "scale of text and widgets, 0.5 to 4; default: the scale of the display; 1 for images and films")
+                   "Scale of text and widgets, 0.5 to 4; default: the scale of the display; 1 for images and films")
         .check(RealNumber{Gui::scale_min, Gui::scale_max});
     app.add_option(
         "--skin", &texts.skin,
-        "vivid: filled bodies, leaves and stars; classic: hollow circles and dots on grey;\ndefault: the skin "
-        "used last, or vivid; for images and films: vivid");
-    app.add_option("--background", &texts.background, "background of the skin vivid: dark or light; default: dark");
-    app.add_option("--freezer", &options.freezer,
-                   "folder with frozen organisms and populations; default: ~/.local/share/evod/freezer");
-    const auto start = app.add_flag("--start", &options.start, "show the start screen first");
-    const auto tour = app.add_flag("--tour", &options.tour,
-                                   "show the tour of the window; default: once, at the first start without --script");
-    const auto script = app.add_option("--script", &options.script_path, "file with actions to perform in the window");
+        "How islands are drawn. vivid: filled bodies, leaves and stars; classic: hollow circles and dots on grey; "
+        "default: vivid");
+    app.add_option("--background", &texts.background, "Background of the skin vivid: dark or light; default: dark");
+    const auto script = app.add_option("--script", &options.script_path, "File with actions to perform in the window");
     const auto shot =
-        app.add_option("--screenshot", &screenshot.path, "save one frame as this PNG file, without a window")
-            .excludes(start)
-            .excludes(tour)
+        app.add_option("--screenshot", &screenshot.path, "Save one frame as this PNG file, without a window")
             .excludes(script);
     app.add_option("--at-tick", &screenshot.tick,
-                   "tick of the screenshot; the first snapshot of this tick or a later one is saved")
+                   "Tick of the screenshot; the first snapshot of this tick or a later one is saved")
         .needs(shot)
         .check(WholeNumber{});
     const auto recording =
         app.add_option(
                "--record", &record.path,
-               "save a sequence of frames without a window: as PNG files in this folder, or, if the path\nends in "
+               "Save a sequence of frames without a window: as PNG files in this folder, or, if the path\nends in "
                ".mp4, .mkv, .webm, .mov, .avi or .gif, as a film created by ffmpeg")
             .excludes(shot)
-            .excludes(start)
-            .excludes(tour)
             .excludes(script);
     add_recording_options(app, recording, record);
     const auto timeout =
-        app.add_option("--timeout", &screenshot.timeout_s, "seconds to wait for a screenshot or a recorded frame")
+        app.add_option("--timeout", &screenshot.timeout_s, "Seconds to wait for a screenshot or a recorded frame")
             .show_default()
             .check(RealNumber{0, 1e6});
     add_help_commands(app);
@@ -248,7 +229,6 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         return app.reject("--server: " + endpoint.error().what);
     }
     options.connection.server = *endpoint;
-    options.server_given = where.is_given();
     if (const auto known = core::apply(credentials, options.connection); !known) {
         return app.reject(known.error().what);
     }

@@ -18,7 +18,6 @@ struct Options {
     std::string world;        // empty: the server's choice
     std::uint32_t island = 0;
     bool all_islands = false;                       // show all islands at once, as tiles
-    std::optional<std::string> beside;              // a second world to show in the right half
     std::optional<std::uint64_t> replay_generation; // start with a replay of the world at this generation
     /// Size of the window, screenshot or recording; nullopt: 1280 × 720 times the scale.
     struct Size {
@@ -30,12 +29,8 @@ struct Options {
     std::optional<Skin> skin;
     std::optional<Background> background;
 
-    bool server_given = false; // if false and no server answers, the start screen opens
-    bool start = false;        // start with the start screen
-    bool tour = false;         // show the tour, even if it was shown before or a script runs
     std::optional<Script> script;
     std::string script_path;
-    std::string freezer; // folder with frozen organisms
 
     /// Options for saving one frame instead of opening a window.
     struct Screenshot {
@@ -60,19 +55,11 @@ struct Options {
 /// Returns the size of the window, screenshot or recording.
 Options::Size size_of(const Options& options, double scale);
 
-/// Returns whether evoview shows the tour: once, at the first start that a user watches.
-///
-/// seen  whether it was shown at an earlier start
-inline bool wants_tour(const Options& options, bool seen) {
-    return options.tour || (!options.script && !seen);
-}
-
-/// Returns the world for the first pane.
+/// Returns the world to view.
 WantedWorld wanted_of(const Options& options, double rate_hz = WantedWorld{}.rate_hz);
 
-/// Returns the stored view options with the skin and the background of the command line. Another skin than the stored
-/// one is shown with its default options.
-ViewOptions view_of(const Options& options, const ViewOptions& stored = {});
+/// Returns the default view options of the skin and the background of the command line.
+ViewOptions view_of(const Options& options);
 
 /// Returns the options. If help, the version or an error was printed, returns the exit status instead.
 std::variant<Options, int> parse_options(int argc, const char* const* argv);

@@ -31,14 +31,14 @@ sf::ContextSettings context_settings() {
 /// Gives a script access to the window.
 class Screen::ScriptHost : public Script::Host {
   public:
-    ScriptHost(Screen& screen, Panes* panes, const WindowRenderer::Frame& frame, const std::function<void()>& draw)
-        : screen_{screen}, panes_{panes}, frame_{frame}, draw_{draw} {}
+    ScriptHost(Screen& screen, WorldView& view, const WindowRenderer::Frame& frame)
+        : screen_{screen}, view_{view}, frame_{frame} {}
 
     void send(const sf::Event& event) override { screen_.script_events_.push_back(event); }
     std::vector<const MarkedWidget*> find(const std::string& name) const override { return widgets().find(name); }
     std::string absence(const std::string& name) const override {
         const std::string_view panel = page_panel_with(name);
-        return panel.empty() ? "" : where_in_page(panel, panes_ == nullptr ? "" : panes_->focused().world.live_link());
+        return panel.empty() ? "" : where_in_page(panel, view_.world.live_link());
     }
     void reveal(const std::string& widget) override { widgets().reveal(widget); }
     unsigned hovered() const override { return widgets().hovered(); }
@@ -46,8 +46,7 @@ class Screen::ScriptHost : public Script::Host {
     std::optional<std::string> typed_text() const override { return screen_.renderer_.gui().typed_text(); }
     std::string key_problem() const override { return screen_.key_problem_; }
     std::optional<Point> locate(const Script::IslandPlace& place) const override {
-        Pane* pane = pane_of(place.half);
-        const codec::ReceivedSnapshot* snapshot = pane == nullptr ? nullptr : pane->world.feed.snapshot();
+        const codec::ReceivedSnapshot* snapshot = view_.world.feed.snapshot();
         if (snapshot == nullptr) {
             return std::nullopt;
         }
@@ -57,22 +56,18 @@ class Screen::ScriptHost : public Script::Host {
             if (!index) {
                 return std::nullopt;
             }
-            const core::SnapshotInterpolator& view = pane->world.feed.view();
+            const core::SnapshotInterpolator& view = view_.world.feed.view();
             const auto [x, y] = view.organisms_at(screen_.renderer_.drawn_blend(view))[*index];
             at = {x, y};
         }
-        const Point screen = pane->camera().to_screen(at);
-        return pane->camera().viewport().contains(screen) ? std::optional{screen} : std::nullopt;
+        const Point screen = view_.camera().to_screen(at);
+        return view_.camera().viewport().contains(screen) ? std::optional{screen} : std::nullopt;
     }
-    bool selects() const override { return screen_.renderer_.panels().tool().kind() == MouseTool::Kind::Select; }
-    std::optional<std::uint32_t> selected(std::optional<std::size_t> half) const override {
-        const Pane* pane = pane_of(half);
-        return pane == nullptr ? std::nullopt : pane->world.feed.selected();
-    }
-    const ViewedWorld* world() const override { return panes_ == nullptr ? nullptr : &panes_->focused().world; }
+    std::optional<std::uint32_t> selected() const override { return view_.world.feed.selected(); }
+    const ViewedWorld* world() const override { return &view_.world; }
     std::string save(const std::string& path) override {
         try {
-            write_file(path, png_of(screen_.renderer_.capture(frame_, draw_)));
+            write_file(path, png_of(screen_.renderer_.capture(view_, frame_)));
         } catch (const std::runtime_error& error) {
             return error.what();
         }
@@ -82,17 +77,9 @@ class Screen::ScriptHost : public Script::Host {
 
   private:
     WidgetPositions& widgets() const { return screen_.renderer_.gui().widget_positions(); }
-    Pane* pane_of(std::optional<std::size_t> half) const {
-        if (panes_ == nullptr || half.value_or(0) >= panes_->size()) {
-            return nullptr;
-        }
-        return half ? &(*panes_)[*half] : &panes_->focused();
-    }
-
     Screen& screen_;
-    Panes* panes_;
+    WorldView& view_;
     const WindowRenderer::Frame& frame_;
-    const std::function<void()>& draw_;
 };
 
 namespace {
@@ -125,12 +112,8 @@ void place(sf::Window& window) {
 Screen::Screen(const Options& options)
     : window_{mode_of(options), "evoview", sf::Style::Default, context_settings()}
     , renderer_{scale_of(options)}
-    , settings_{in_state_folder("evoview.ini"), renderer_.panels()}
-    , tour_wanted_{wants_tour(options, renderer_.panels().settings().tour_seen)}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
-    renderer_.panels().set_freezer(options.freezer.empty() ? default_freezer_folder()
-                                                           : std::filesystem::path{options.freezer});
     place(window_);
     window_.setVerticalSyncEnabled(true);
 }
@@ -159,10 +142,10 @@ WindowRenderer::Frame Screen::frame(Clock::time_point now) const {
         .width_pixels = std::max(size.x, 1u), .height_pixels = std::max(size.y, 1u), .now = now, .interactive = true};
 }
 
-void Screen::show(Panes* panes, const WindowRenderer::Frame& frame, const std::function<void()>& draw) {
-    draw();
+void Screen::show(WorldView& view, const WindowRenderer::Frame& frame) {
+    renderer_.draw(view, frame);
     window_.display();
-    ScriptHost host{*this, panes, frame, draw};
+    ScriptHost host{*this, view, frame};
     advance_script(host, frame.now);
     std::this_thread::sleep_until(frame.now + frame_min);
 }

@@ -1,22 +1,19 @@
-// Screen: the window on the desktop and the renderer that draws in it, from the start of evoview to its end. It shows
-// the start screen or worlds. It supplies the events of the user and of a script.
+// Screen: the window on the desktop and the renderer that draws in it, from the start of evoview to its end. It
+// supplies the events of the user and of a script.
 //
-// Owner        run().
+// Owner        main().
 // Threads      used by the thread that created it.
 #pragma once
 
-#include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/options.h"
 #include "client/viewer/shell/script.h"
-#include "client/viewer/shell/settings.h"
+#include "client/viewer/view/window_renderer.h"
 
 #include <SFML/Window/ContextSettings.hpp>
 #include <SFML/Window/Window.hpp>
 
 #include <deque>
-#include <functional>
 #include <string>
-#include <utility>
 
 namespace evod::viewer {
 
@@ -38,10 +35,8 @@ class Screen {
 
     /// Draws and shows a frame, runs the next step of the script, and waits until the next frame is due.
     ///
-    /// panes   the shown worlds; null while the start screen is shown
-    /// draw    draws the frame; is called again if the script takes a screenshot
     /// Throws std::runtime_error with the script line if a step of the script fails.
-    void show(Panes* panes, const WindowRenderer::Frame& frame, const std::function<void()>& draw);
+    void show(WorldView& view, const WindowRenderer::Frame& frame);
 
     /// Call after an event of a key has been handled. If the key came from the script and had no effect, the script
     /// fails.
@@ -49,13 +44,8 @@ class Screen {
     /// problem  why the key had no effect; empty if it had one
     void report_key(std::string problem);
 
-    /// Returns once whether to show the tour.
-    bool take_tour() { return std::exchange(tour_wanted_, false); }
-
     sf::Window& window() { return window_; }
     WindowRenderer& renderer() { return renderer_; }
-    /// The view options that the next window and the next start of evoview use.
-    ViewOptions& stored_view() { return settings_.view(); }
 
   private:
     class ScriptHost;
@@ -63,8 +53,6 @@ class Screen {
 
     sf::Window window_;
     WindowRenderer renderer_; // declared after window_, because it needs the OpenGL context of the window
-    Settings settings_;       // declared after renderer_, whose panels it stores
-    bool tour_wanted_;
     Script script_;
     std::string script_path_;
     std::deque<sf::Event> script_events_;

@@ -2,13 +2,14 @@
 
 #include "client/core/duration.h"
 #include "client/viewer/drawing/png.h"
-#include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/screen.h"
 #include "client/viewer/shell/snapshot_wait.h"
+#include "client/viewer/view/window_renderer.h"
 #include "client/viewer/world/status_text.h"
 
 #include <SFML/Window/Context.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <stdexcept>
@@ -39,39 +40,32 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
     sf::Context context{context_settings(), 1, 1};
     const double scale = options.scale.value_or(1); // independent of any display
     WindowRenderer renderer{scale};
-    Panes panes{wanted_of(options, screenshot_rate_hz), options.beside, view_of(options)};
+    WorldView view{wanted_of(options, screenshot_rate_hz), view_of(options)};
+    const RunControl& control = view.world.feed.control();
     bool reported = false;
-    const auto late = [&]() -> const ViewedWorld* { // returns a world whose snapshot has not arrived; null: none
-        const bool all = all_have_snapshots(panes);
-        for (std::size_t i = 0; i < panes.size(); ++i) {
-            for (const Tile& tile : panes[i].tiles()) {
-                if (!tile.view.latest() || tile.view.latest()->about.tick() < screenshot.tick) {
-                    return &panes[i].world;
-                }
-            }
-        }
-        return all ? nullptr : &panes[0].world;
+    const auto arrived = [&] {
+        return has_all_snapshots(view) && std::ranges::all_of(view.tiles(), [&](const Tile& tile) {
+                   return tile.view.latest()->about.tick() >= screenshot.tick;
+               });
     };
-    while (const ViewedWorld* world = late()) {
-        for (std::size_t i = 0; i < panes.size(); ++i) {
-            check_reachable(panes[i].world, screenshot.tick);
-        }
-        const auto state = world->feed.control().state();
-        if (!reported && (state == evod::v1::RUN_STATE_WAITING || state == evod::v1::RUN_STATE_PAUSED) &&
-            world->feed.control().tick() < screenshot.tick) {
-            std::cerr << "evoview: " << progress_text(*world) << "; waiting until a client runs it\n";
+    while (!arrived()) {
+        check_reachable(view.world, screenshot.tick);
+        const bool stopped =
+            control.state() == evod::v1::RUN_STATE_WAITING || control.state() == evod::v1::RUN_STATE_PAUSED;
+        if (!reported && stopped && control.tick() < screenshot.tick) {
+            std::cerr << "evoview: " << progress_text(view.world) << "; waiting until a client runs it\n";
             reported = true;
         }
         if (Clock::now() >= end) {
             throw std::runtime_error{"no snapshot of tick " + std::to_string(screenshot.tick) + " arrived within " +
-                                     core::duration(screenshot.timeout_s) + ": " + progress_text(*world)};
+                                     core::duration(screenshot.timeout_s) + ": " + progress_text(view.world)};
         }
         std::this_thread::sleep_for(poll_interval);
     }
     const Options::Size size = size_of(options, scale);
     const WindowRenderer::Frame frame{.width_pixels = size.width, .height_pixels = size.height, .now = Clock::now()};
-    write_file(screenshot.path, png_of(renderer.capture(panes, frame)));
-    const auto& about = panes[0].world.feed.snapshot()->about;
+    write_file(screenshot.path, png_of(renderer.capture(view, frame)));
+    const auto& about = view.world.feed.snapshot()->about;
     std::cout << screenshot.path << ": " << quoted(about.world()) << " at tick " << about.tick() << '\n';
 }
 

@@ -1,5 +1,6 @@
 #include "client/viewer/shell/script.h"
 
+#include "client/viewer/panels/page_panels.h"
 #include "client/viewer/shell/script_acts.h"
 #include "client/viewer/world/viewed_world.h"
 
@@ -146,6 +147,9 @@ core::Result<Acts> parse_click(ScriptLine& line) {
     if (line.words.size() == 2) {
         return acts::click(line.words[1]);
     }
+    if (line.words[1].starts_with("left/") || line.words[1].starts_with("right/")) {
+        return usage("word 2: two worlds side by side are in the browser page: " + way_to_page(""));
+    }
     const auto place = acts::island_place(line.words[1], line.words[2]);
     if (!place) {
         return word_error(line, 3, "no more words (put a word with spaces in quotes)");
@@ -154,17 +158,6 @@ core::Result<Acts> parse_click(ScriptLine& line) {
         return word_error(line, 3, place->error().what);
     }
     return acts::click(**place);
-}
-
-core::Result<Acts> parse_drag(ScriptLine& line) {
-    const auto place = acts::island_place(line.words[2], line.words[3]);
-    if (!place) {
-        return word_error(line, 3, "at, organism, left/at, right/at, left/organism, right/organism");
-    }
-    if (!*place) {
-        return word_error(line, 4, place->error().what);
-    }
-    return acts::drag(line.words[1], **place);
 }
 
 struct Verb {
@@ -192,7 +185,6 @@ const Verb verbs[] = {
      "clicks on a widget, named by the text on it or beside it; or on the island: organism NUMBER, or at X,Y with "
      "fractions of its width and height",
      1, 2, parse_click},
-    {"drag", "NAME at X,Y", "drags a widget to the island, as an organism of the freezer", 3, 3, parse_drag},
     {"menu", "NAME", "clicks on a widget with the right button, which opens its menu", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> { return acts::click(line.words[1], sf::Mouse::Right); }},
     {"set", "NAME TEXT",
@@ -279,6 +271,9 @@ std::string verb_names() {
 
 core::Result<Acts> acts_of(ScriptLine& line) {
     const auto* verb = std::ranges::find(verbs, line.words[0], &Verb::name);
+    if (line.words[0] == "drag") {
+        return usage("drag places organisms, which the browser page does: " + where_in_page("Freezer", ""));
+    }
     if (verb == std::end(verbs)) {
         return word_error(line, 1, verb_names());
     }

@@ -43,7 +43,6 @@ class Script {
   public:
     /// A place in a shown island that a script clicks.
     struct IslandPlace {
-        std::optional<std::size_t> half;       // 0: left, 1: right; nullopt: the half with the focus
         std::optional<std::uint32_t> organism; // the centre of this organism; nullopt: `at`
         Point at;                              // from {0, 0}, the upper left corner, to {1, 1}
     };
@@ -72,11 +71,9 @@ class Script {
         virtual std::string key_problem() const = 0;
         /// Returns the place of an island in the window; nullopt if it is not visible.
         virtual std::optional<Point> locate(const IslandPlace& place) const = 0;
-        /// Returns whether a click on an organism selects it; false while a tool for placing or removing is chosen.
-        virtual bool selects() const { return true; }
-        /// Returns the organism selected in a half of the window.
-        virtual std::optional<std::uint32_t> selected(std::optional<std::size_t> half) const = 0;
-        /// Returns the viewed world; null while the start screen is shown.
+        /// Returns the selected organism.
+        virtual std::optional<std::uint32_t> selected() const = 0;
+        /// Returns the viewed world; null if there is none.
         virtual const ViewedWorld* world() const = 0;
         /// Saves the window as a PNG file. Returns an error message; empty on success.
         virtual std::string save(const std::string& path) = 0;

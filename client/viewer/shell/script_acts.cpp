@@ -304,8 +304,8 @@ Acts click(const Script::IslandPlace& place) {
                 return "";
             },
             [place](Run& run) -> Waits {
-                const auto selected = run.host.selected(place.half);
-                if (place.organism && run.host.selects() && selected != place.organism) {
+                const auto selected = run.host.selected();
+                if (place.organism && selected != place.organism) {
                     return usage("the click has selected " +
                                  (selected ? "organism " + std::to_string(*selected) : "no organism"));
                 }
@@ -313,35 +313,8 @@ Acts click(const Script::IslandPlace& place) {
             }};
 }
 
-Acts drag(const std::string& widget, const Script::IslandPlace& place) {
-    return {[widget](Run& run) { return move_to(run, widget); },
-            [widget](Run& run) {
-                auto waits = point_at(run, widget);
-                if (waits && waits->empty()) {
-                    send_button(run.host, sf::Event::MouseButtonPressed, run.host.find(widget).front()->centre());
-                }
-                return waits;
-            },
-            [place](Run& run) { return move_to(run, place); },
-            [widget, place](Run& run) -> Waits {
-                const auto point = run.host.locate(place);
-                send_button(run.host, sf::Event::MouseButtonReleased, point.value_or(Point{}));
-                ++run.actions;
-                if (!point || run.host.selects()) {
-                    return usage(in_quotes(widget) + " cannot be dragged to an island");
-                }
-                return "";
-            }};
-}
-
 std::optional<core::Result<Script::IslandPlace>> island_place(std::string_view kind, const std::string& word) {
     Script::IslandPlace place;
-    for (const auto& [prefix, half] : {std::pair<std::string_view, std::size_t>{"left/", 0}, {"right/", 1}}) {
-        if (kind.starts_with(prefix)) {
-            place.half = half;
-            kind.remove_prefix(prefix.size());
-        }
-    }
     if (kind == "organism") {
         place.organism = number_in<std::uint32_t>(word);
         return place.organism ? core::Result<Script::IslandPlace>{place}

@@ -45,13 +45,10 @@ Acts type(const std::string& text);
 /// Clicks on a widget as soon as it is visible and enabled.
 Acts click(const std::string& widget, sf::Mouse::Button button = sf::Mouse::Left);
 
-/// Clicks on a place of an island. If the place is an organism and clicks select, the click must select it.
+/// Clicks on a place of an island. If the place is an organism, the click must select it.
 Acts click(const Script::IslandPlace& place);
 
-/// Drags a widget to a place of an island and drops it there. The window must show what the drop would place.
-Acts drag(const std::string& widget, const Script::IslandPlace& place);
-
-/// Parses a place such as "organism 12" or "left/at 0.4,0.6". Returns nullopt if `kind` does not begin a place; returns
+/// Parses a place such as "organism 12" or "at 0.4,0.6". Returns nullopt if `kind` does not begin a place; returns
 /// an error with what is allowed if `word` is wrong.
 std::optional<core::Result<Script::IslandPlace>> island_place(std::string_view kind, const std::string& word);
 

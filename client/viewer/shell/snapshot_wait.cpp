@@ -30,15 +30,10 @@ void check_reachable(const ViewedWorld& world) {
     }
 }
 
-bool all_have_snapshots(Panes& panes) {
-    panes.update(core::SnapshotInterpolator::Clock::now());
-    bool all = true;
-    for (std::size_t i = 0; i < panes.size(); ++i) {
-        const std::vector<Tile> tiles = panes[i].tiles();
-        all = all && panes[i].world.all_answered() && !panes[i].world.refusal() &&
-              std::ranges::all_of(tiles, [](const Tile& tile) { return tile.view.latest() != nullptr; });
-    }
-    return all;
+bool has_all_snapshots(WorldView& view) {
+    view.world.update(core::SnapshotInterpolator::Clock::now());
+    return view.world.all_answered() && !view.world.refusal() &&
+           std::ranges::all_of(view.tiles(), [](const Tile& tile) { return tile.view.latest() != nullptr; });
 }
 
 } // namespace evod::viewer

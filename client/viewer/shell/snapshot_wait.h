@@ -1,9 +1,9 @@
-// Snapshot wait: waits for the snapshots of panes that are drawn without a window, and writes the progress messages.
+// Snapshot wait: waits for the snapshots of a world that is drawn without a window, and writes the progress messages.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
 
-#include "client/viewer/panes/pane.h"
+#include "client/viewer/view/world_view.h"
 
 #include <chrono>
 #include <string>
@@ -22,8 +22,8 @@ std::string quoted(const std::string& world);
 /// Throws std::runtime_error, with one sentence, if no snapshot can ever arrive.
 void check_reachable(const ViewedWorld& world);
 
-/// Processes everything that was received since the last call. Returns whether every pane has received an answer to all
-/// its requests and a snapshot of each island that it shows.
-bool all_have_snapshots(Panes& panes);
+/// Processes everything that was received since the last call. Returns whether every request has been answered and a
+/// snapshot of each shown island has arrived.
+bool has_all_snapshots(WorldView& view);
 
 } // namespace evod::viewer

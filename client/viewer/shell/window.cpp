@@ -21,6 +21,15 @@ bool is_key(const sf::Event& event) {
            (event.type == sf::Event::KeyPressed && (event.key.code < Key::LControl || event.key.code > Key::RSystem));
 }
 
+/// Explains why a key has no effect.
+std::string unused_key_text(const sf::Event& event, std::string_view link) {
+    using Key = sf::Keyboard;
+    const bool of_two_worlds = event.type == sf::Event::KeyPressed &&
+                               (event.key.code == Key::B || event.key.code == Key::X || event.key.code == Key::K);
+    return of_two_worlds ? "two worlds side by side are in the browser page: " + way_to_page(link)
+                         : "this key has no effect";
+}
+
 void toggle(bool& shown) {
     shown = !shown;
 }
@@ -31,70 +40,40 @@ Window::Window(Screen& screen, const Options& options)
     : screen_{screen}
     , window_{screen.window()}
     , renderer_{screen.renderer()}
-    , panes_{wanted_of(options), options.beside, view_of(options, screen.stored_view())}
-    , stores_view_{!options.skin && !options.background} {}
+    , view_{wanted_of(options), view_of(options)} {}
 
-Window::~Window() {
-    if (stores_view_) {
-        screen_.stored_view() = panes_.focused().island_view.options;
-    }
-}
-
-Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
+void Window::run() {
     using Clock = core::SnapshotInterpolator::Clock;
     now_ = Clock::now();
-    bool was_connected = false;
-    while (window_.isOpen() && !to_start_screen_) {
+    while (window_.isOpen()) {
         const double seconds = std::chrono::duration<double>{Clock::now() - now_}.count();
         now_ = Clock::now();
         handle_events();
-        input_.move(panes_.focused().camera(), seconds);
-        panes_.link_cameras(panes_.focused().camera());
-        panes_.update(now_);
-        if (!was_connected) {
-            was_connected = panes_[0].world.server.status().connected_count > 0;
-            if (was_connected) {
-                connected();
-            } else if (std::string why = panes_[0].world.server.problem(); must_connect && !why.empty()) {
-                return {.to_start_screen = true, .reason = std::move(why)};
-            }
-        }
-        for (std::size_t i = 0; i < panes_.size(); ++i) {
-            for (std::string& notice : panes_[i].world.server.take_notices()) {
-                renderer_.overlay().notice(std::move(notice), now_);
-            }
-        }
-        if (panes_.focused().world.feed.snapshot() != nullptr && screen_.take_tour()) {
-            renderer_.panels().set_tour_seen();
-            renderer_.overlay().tour().start();
+        input_.move(view_.camera(), seconds);
+        view_.world.update(now_);
+        for (std::string& notice : view_.world.server.take_notices()) {
+            renderer_.overlay().notice(std::move(notice), now_);
         }
         WindowRenderer::Frame next = screen_.frame(now_);
         next.interpolate = true;
         next.pointed_at = renderer_.gui().captured().mouse ? std::nullopt : input_.pointed_at();
-        screen_.show(&panes_, next, [&] { renderer_.draw(panes_, next); });
+        screen_.show(view_, next);
     }
-    return {.to_start_screen = to_start_screen_ && window_.isOpen(), .reason = ""};
 }
 
 void Window::handle_events() {
     for (sf::Event event; screen_.poll(event);) {
-        const Captured captured = renderer_.captured(event);
+        const Captured captured = renderer_.gui().captured();
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
             const Point place{double(event.mouseButton.x), double(event.mouseButton.y)};
-            panes_.focus_at(place);
+            view_.choose_island_at(place);
             // A running organism moves on before the button is released.
-            pressed_organism_ = renderer_.organism_drawn_at(panes_.focused(), place);
-        }
-        if (event.type == sf::Event::KeyPressed && !captured.keyboard &&
-            renderer_.overlay().tour().handle(event.key.code)) {
-            screen_.report_key("");
-            continue;
+            pressed_organism_ = renderer_.organism_drawn_at(view_, place);
         }
         Camera& camera = event.type == sf::Event::MouseWheelScrolled
-                             ? panes_.camera_at({double(event.mouseWheelScroll.x), double(event.mouseWheelScroll.y)})
-                             : panes_.focused().camera();
+                             ? view_.camera_at({double(event.mouseWheelScroll.x), double(event.mouseWheelScroll.y)})
+                             : view_.camera();
         const auto action = input_.handle(event, captured, camera);
-        panes_.link_cameras(camera);
         const std::string problem = action ? problem_of(*action) : "";
         if (action && problem.empty()) {
             carry_out(*action);
@@ -103,16 +82,16 @@ void Window::handle_events() {
         }
         if (is_key(event)) {
             const bool used = action || captured.keyboard || Input::moves_camera(event);
-            screen_.report_key(used ? problem : "this key has no effect");
+            screen_.report_key(used ? problem : unused_key_text(event, view_.world.live_link()));
         }
         if (const auto click = input_.take_click()) {
-            renderer_.click_at(panes_.focused(), *click, pressed_organism_);
+            renderer_.select(view_, pressed_organism_);
         }
     }
 }
 
 std::string Window::problem_of(Action action) {
-    ViewedWorld& world = panes_.focused().world;
+    ViewedWorld& world = view_.world;
     if (const auto key = panel_key_of(action)) {
         return renderer_.panels().panel_at(*key) ? "" : where_in_page(page_panel_at(*key), world.live_link());
     }
@@ -128,14 +107,12 @@ std::string Window::problem_of(Action action) {
     case Action::NextIsland:
     case Action::PreviousIsland:
     case Action::AllIslands:
-        return world.feed.island_count() > 1 ? "" : "This world has only one island";
+        return world.feed.island_count() > 1 ? "" : "There is only one island";
     case Action::PreviousGeneration:
     case Action::NextGeneration:
         return world.replay.info() != nullptr ? "" : "Only a replay has a time line: press P to open one";
-    case Action::OtherPane:
-        return panes_.size() > 1 ? "" : "Only one world is shown: press B to show a second one";
     case Action::Follow:
-        return world.feed.selected() ? "" : "No organism is selected: click one first";
+        return world.feed.selected() ? "" : "Select an organism first: click it";
     default:
         return "";
     }
@@ -145,8 +122,8 @@ void Window::carry_out(Action action) {
     if (const auto key = panel_key_of(action)) {
         return renderer_.panels().show(*renderer_.panels().panel_at(*key));
     }
-    ViewedWorld& world = panes_.focused().world;
-    IslandView& island_view = panes_.focused().island_view;
+    ViewedWorld& world = view_.world;
+    IslandView& island_view = view_.island_view;
     switch (action) {
     case Action::PauseOrResume:
         return world.commands.pause_or_resume();
@@ -174,16 +151,10 @@ void Window::carry_out(Action action) {
         return world.replay.seek_generations(-1);
     case Action::NextGeneration:
         return world.replay.seek_generations(1);
-    case Action::Beside:
-        return panes_.toggle_beside();
-    case Action::OtherPane:
-        return panes_.focus_next();
-    case Action::LinkCameras:
-        return panes_.toggle_linked();
     case Action::AllIslands:
         return world.feed.show_all_islands(!world.feed.all_islands());
     case Action::Fit:
-        return panes_.focused().camera().fit();
+        return view_.camera().fit();
     case Action::NextColouring:
         return island_view.next_colouring();
     case Action::Radii:
@@ -195,7 +166,7 @@ void Window::carry_out(Action action) {
     case Action::Trails:
         return toggle(island_view.options.trails);
     case Action::Follow:
-        return island_view.toggle_following(world);
+        return view_.island_data.toggle_following(world.feed);
     case Action::Screenshot:
         return save_screenshot();
     case Action::CopyLink:
@@ -204,9 +175,6 @@ void Window::carry_out(Action action) {
         return renderer_.panels().toggle_sidebar();
     case Action::Help:
         return renderer_.overlay().toggle_help();
-    case Action::StartScreen:
-        to_start_screen_ = true;
-        return;
     case Action::Close:
         return close_front();
     case Action::Quit:
@@ -220,13 +188,8 @@ void Window::close_front() {
     if (renderer_.gui().close_popup()) {
         return;
     }
-    MouseTool& tool = renderer_.panels().tool();
     if (renderer_.overlay().help()) {
         renderer_.overlay().toggle_help();
-    } else if (tool.kind() != MouseTool::Kind::Select) {
-        tool.choose(MouseTool::Kind::Select);
-    } else if (renderer_.panels().close_front()) {
-        return;
     } else if (now_ < asked_to_quit_ + Overlay::notice_shown) {
         window_.close();
     } else { // the user may have pressed Esc once too often
@@ -236,7 +199,7 @@ void Window::close_front() {
 }
 
 void Window::copy_link() {
-    const std::string link = panes_.focused().world.link();
+    const std::string link = view_.world.link();
     if (link.empty()) {
         renderer_.overlay().notice("No link: start evod with --web, so that it serves the page for browsers", now_);
         return;
@@ -246,7 +209,7 @@ void Window::copy_link() {
 }
 
 void Window::save_screenshot() {
-    const ViewedWorld& world = panes_.focused().world;
+    const ViewedWorld& world = view_.world;
     std::string name = "evoview";
     if (const codec::ReceivedSnapshot* snapshot = world.feed.snapshot()) {
         name += "-" + snapshot->about.world() + "-island-" + std::to_string(snapshot->about.island()) + "-tick-" +
@@ -256,7 +219,7 @@ void Window::save_screenshot() {
     const std::string path = std::filesystem::absolute(name).string();
     try {
         // Draw without interpolation, so that the positions are those of the tick in the file name.
-        write_file(path, png_of(renderer_.capture(panes_, screen_.frame(now_))));
+        write_file(path, png_of(renderer_.capture(view_, screen_.frame(now_))));
         renderer_.overlay().notice("Saved " + path, now_);
     } catch (const std::runtime_error& error) {
         renderer_.overlay().notice(error.what(), now_);

@@ -60,10 +60,6 @@ std::string significant(double number) {
     return shown_number(std::round(number / unit) * unit);
 }
 
-std::string with_unit(double number, std::string_view unit) {
-    return shown_number(number) + (unit.empty() ? "" : " ") + std::string{unit};
-}
-
 std::string three_digits(double number) {
     const double size = std::abs(number);
     if (!std::isfinite(number) || size >= 1e12) {

@@ -22,8 +22,6 @@ std::string with_separators(std::string printed);
 std::string shown_number(double number);
 /// Returns the number rounded to three significant digits: "1,230", "0.0123", "1.23e-06"; "–" if it is not finite.
 std::string significant(double number);
-/// Returns the number with its unit: "1,234.5 px". If `unit` is empty, only the number.
-std::string with_unit(double number, std::string_view unit);
 
 /// Returns the number with three significant digits: "1.21", "0.0123"; 1,000 and more as a whole number: "12,346"; "–"
 /// if it is not finite.

@@ -6,7 +6,6 @@
 #include "evod/v1/world.pb.h"
 
 #include <cstddef>
-#include <string_view>
 #include <vector>
 
 namespace evod::viewer {
@@ -22,11 +21,5 @@ struct GeneRange {
 
 /// Returns the genes of a group; an empty range if the chromosome has none.
 GeneRange genes_of(const GeneGroups& groups, evod::v1::GeneGroup group);
-
-/// Returns the groups that the chromosome has, in its order.
-std::vector<evod::v1::GeneGroup> distinct_groups(const GeneGroups& groups);
-
-/// "body", "brain", "free"
-std::string_view name_of(evod::v1::GeneGroup group);
 
 } // namespace evod::viewer

@@ -18,7 +18,6 @@ using evod::v1::ParameterDescription;
 using evod::v1::ParameterValue;
 
 constexpr double decades_min = 100; // if max / min is above this ratio, the slider is logarithmic
-constexpr std::size_t transactions_kept = 100;
 
 constexpr std::size_t unit_length_max = 10; // longer units do not fit into a field
 
@@ -179,10 +178,6 @@ std::vector<ParameterGroup> group(std::span<const ParameterDescription> registry
 
 void ParameterEdits::describe(std::vector<ParameterDescription> registry) {
     registry_ = std::move(registry);
-    index_.clear();
-    for (std::size_t i = 0; i < registry_.size(); ++i) {
-        index_.emplace(registry_[i].name(), i);
-    }
     forget();
 }
 
@@ -192,21 +187,24 @@ void ParameterEdits::forget() {
         states_[i].value = registry_[i].default_value();
     }
     revision_ = 0;
-    sent_ = {};
-    done_.clear();
-    undone_.clear();
+    sent_.clear();
     problem_.clear();
 }
 
+std::optional<std::size_t> ParameterEdits::index_of(std::string_view name) const {
+    const auto found = std::ranges::find(registry_, name, &ParameterDescription::name);
+    return found == registry_.end() ? std::nullopt : std::optional{static_cast<std::size_t>(found - registry_.begin())};
+}
+
 void ParameterEdits::take(const evod::v1::ParameterState& reported) {
-    const auto found = index_.find(reported.name());
-    if (found == index_.end()) {
+    const auto found = index_of(reported.name());
+    if (!found) {
         return;
     }
-    State& state = states_[found->second];
+    State& state = states_[*found];
     state.value = reported.value();
     state.pending = reported.has_pending() ? std::optional{reported.pending()} : std::nullopt;
-    if (state.edit && same(*state.edit, requested_value(found->second))) {
+    if (state.edit && same(*state.edit, requested_value(*found))) {
         state.edit.reset();
         state.violation.reset();
     }
@@ -228,8 +226,8 @@ bool ParameterEdits::update(const evod::v1::ParametersChanged& changed) {
     }
     for (const evod::v1::ParameterState& state : changed.changed()) {
         take(state);
-        if (const auto found = index_.find(state.name()); found != index_.end()) {
-            states_[found->second].client_of_last_change = core::to_text(changed.by());
+        if (const auto found = index_of(state.name())) {
+            states_[*found].client_of_last_change = core::to_text(changed.by());
         }
     }
     const bool next = changed.revision() == revision_ + 1;
@@ -263,15 +261,11 @@ void ParameterEdits::forget_refusal() {
 }
 
 void ParameterEdits::edit(std::size_t i, ParameterValue value) {
-    revert(i);
+    states_[i].edit.reset();
+    forget_refusal();
     if (!same(value, requested_value(i))) {
         states_[i].edit = std::move(value);
     }
-}
-
-void ParameterEdits::revert(std::size_t i) {
-    states_[i].edit.reset();
-    forget_refusal();
 }
 
 void ParameterEdits::revert_all() {
@@ -285,74 +279,25 @@ std::size_t ParameterEdits::edit_count() const {
     return static_cast<std::size_t>(std::ranges::count_if(states_, [](const State& state) { return !!state.edit; }));
 }
 
-// ---- transactions ----------------------------------------------------------------------------------------------
+// ---- requests ----------------------------------------------------------------------------------------------
 
-std::optional<evod::v1::Request> ParameterEdits::send(const std::string& world, Kind kind,
-                                                      std::vector<Change> changes) {
+std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world) {
+    if (busy() || edit_count() == 0) {
+        return std::nullopt;
+    }
     evod::v1::Request request;
     evod::v1::SetParameters& set = *request.mutable_set_parameters();
     set.set_world(world);
     set.set_expected_revision(revision_);
-    for (const Change& change : changes) {
-        evod::v1::ParameterAssignment& assignment = *set.add_parameters();
-        assignment.set_name(registry_[change.parameter].name());
-        *assignment.mutable_value() = change.after;
-    }
-    sent_ = {kind, std::move(changes)};
-    return request;
-}
-
-std::optional<evod::v1::Request> ParameterEdits::apply(const std::string& world) {
-    std::vector<Change> changes;
     for (std::size_t i = 0; i < states_.size(); ++i) {
         if (states_[i].edit) {
-            changes.push_back({i, requested_value(i), *states_[i].edit});
+            evod::v1::ParameterAssignment& assignment = *set.add_parameters();
+            assignment.set_name(registry_[i].name());
+            *assignment.mutable_value() = *states_[i].edit;
+            sent_.push_back({i, *states_[i].edit});
         }
     }
-    return busy() || changes.empty() ? std::nullopt : send(world, Kind::Apply, std::move(changes));
-}
-
-std::optional<evod::v1::Request> ParameterEdits::send_reversed(const std::string& world, Kind kind,
-                                                               std::vector<std::vector<Change>>& from) {
-    while (!busy() && !from.empty()) {
-        std::vector<Change> changes;
-        for (const Change& change : from.back()) {
-            if (same(requested_value(change.parameter), change.after)) {
-                changes.push_back({change.parameter, change.after, change.before});
-            }
-        }
-        from.pop_back();
-        if (!changes.empty()) {
-            return send(world, kind, std::move(changes));
-        } // other clients have changed all these values since
-    }
-    return std::nullopt;
-}
-
-std::optional<evod::v1::Request> ParameterEdits::undo(const std::string& world) {
-    return send_reversed(world, Kind::Undo, done_);
-}
-
-std::optional<evod::v1::Request> ParameterEdits::redo(const std::string& world) {
-    return send_reversed(world, Kind::Redo, undone_);
-}
-
-void ParameterEdits::take_acceptance() {
-    for (const Change& change : sent_.changes) {
-        State& state = states_[change.parameter];
-        state.client_of_last_change.clear();
-        if (state.edit && same(*state.edit, change.after)) {
-            state.edit.reset(); // otherwise the user has edited the value again meanwhile
-        }
-    }
-    if (sent_.kind == Kind::Apply) {
-        undone_.clear();
-    }
-    auto& kept = sent_.kind == Kind::Undo ? undone_ : done_;
-    kept.push_back(std::move(sent_.changes));
-    if (kept.size() > transactions_kept) {
-        kept.erase(kept.begin());
-    }
+    return request;
 }
 
 void ParameterEdits::take_refusal(const evod::v1::Status& status) {
@@ -361,8 +306,8 @@ void ParameterEdits::take_refusal(const evod::v1::Status& status) {
         const std::string_view field = violation.field();
         const std::string_view name = field.substr(field.starts_with(field_prefix) ? field_prefix.size() : 0);
         is_stale = is_stale || name == "expected_revision";
-        if (const auto found = index_.find(name); found != index_.end()) {
-            states_[found->second].violation = violation;
+        if (const auto found = index_of(name)) {
+            states_[*found].violation = violation;
             marked = true;
         }
     }
@@ -378,7 +323,13 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     forget_refusal();
     const bool done = response != nullptr && response->status().code() == evod::v1::CODE_UNSPECIFIED;
     if (done) {
-        take_acceptance();
+        for (const Sent& sent : sent_) {
+            State& state = states_[sent.parameter];
+            state.client_of_last_change.clear();
+            if (state.edit && same(*state.edit, sent.value)) {
+                state.edit.reset(); // otherwise the user has edited the value again before the answer
+            }
+        }
         if (response->has_parameters()) {
             update(response->parameters());
         }
@@ -387,13 +338,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     } else {
         problem_ = "No answer arrived: the change may or may not have been applied";
     }
-    if (!done && sent_.kind != Kind::Apply) { // keep the transaction, so that the user can undo or redo it again
-        for (Change& change : sent_.changes) {
-            std::swap(change.before, change.after);
-        }
-        (sent_.kind == Kind::Undo ? done_ : undone_).push_back(std::move(sent_.changes));
-    }
-    sent_ = {};
+    sent_.clear();
     return !done;
 }
 

@@ -1,9 +1,9 @@
-// ParameterEdits: the parameters of a world, the edits that have not been sent, and transactions with undo and redo.
+// ParameterEdits: the parameters of a world, and the edits that have not been sent.
 //
 // All parameters come from the server's registry, so a parameter that is added to the server appears here. Edits are
 // collected and sent as one SetParameters request; the server applies all of them or none. The request contains the
 // revision on which the edits are based. If another client has changed a parameter since, the server therefore rejects
-// the request. Undo sends another SetParameters request.
+// the request.
 //
 // Owner        the parameters panel.
 // Threads      none.
@@ -13,7 +13,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -103,28 +102,18 @@ class ParameterEdits {
 
     /// Edits a value. A value equal to requested_value() removes the edit.
     void edit(std::size_t i, evod::v1::ParameterValue value);
-    void revert(std::size_t i);
     void revert_all();
     std::size_t edit_count() const;
 
-    // The following functions create transactions. Only one transaction may be pending. The caller must send each
-    // returned request and call answered() exactly once for it.
-
-    bool busy() const { return !sent_.changes.empty(); }
-    /// Returns the request that sends all edits. Returns nullopt if there is no edit or a transaction is pending.
+    bool busy() const { return !sent_.empty(); }
+    /// Returns the request that sends all edits. The caller must send it and call answered() exactly once for it.
+    /// Returns nullopt if there is no edit or a request is pending.
     std::optional<evod::v1::Request> apply(const std::string& world);
-    /// Returns the request that restores the values before the last transaction that was not undone. Values that other
-    /// clients have changed since are not restored.
-    std::optional<evod::v1::Request> undo(const std::string& world);
-    std::optional<evod::v1::Request> redo(const std::string& world);
-    bool can_undo() const { return !busy() && !done_.empty(); }
-    bool can_redo() const { return !busy() && !undone_.empty(); }
-
     /// response  the server's answer to the pending request; null: no answer arrived
     /// returns   whether the caller must request the complete set.
     bool answered(const evod::v1::Response* response);
 
-    /// Returns why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is
+    /// Returns why the last request was refused; empty if it was accepted. A reason that concerns one parameter is
     /// in violation().
     const std::string& problem() const { return problem_; }
 
@@ -135,30 +124,20 @@ class ParameterEdits {
         std::string client_of_last_change;
         std::optional<evod::v1::Violation> violation;
     };
-    struct Change {
+    struct Sent {
         std::size_t parameter;
-        evod::v1::ParameterValue before, after;
-    };
-    enum class Kind { Apply, Undo, Redo };
-    struct Transaction {
-        Kind kind = Kind::Apply;
-        std::vector<Change> changes;
+        evod::v1::ParameterValue value;
     };
 
+    std::optional<std::size_t> index_of(std::string_view name) const;
     void forget_refusal();
-    std::optional<evod::v1::Request> send(const std::string& world, Kind kind, std::vector<Change> changes);
-    std::optional<evod::v1::Request> send_reversed(const std::string& world, Kind kind,
-                                                   std::vector<std::vector<Change>>& from);
     void take(const evod::v1::ParameterState& state);
-    void take_acceptance();
     void take_refusal(const evod::v1::Status& status);
 
     std::vector<evod::v1::ParameterDescription> registry_;
-    std::map<std::string, std::size_t, std::less<>> index_; // index by parameter name
-    std::vector<State> states_;                             // one per parameter, in the order of the registry
-    std::uint64_t revision_ = 0;                            // 0: no set has been received
-    Transaction sent_;
-    std::vector<std::vector<Change>> done_, undone_; // newest transaction last
+    std::vector<State> states_;  // one per parameter, in the order of the registry
+    std::uint64_t revision_ = 0; // 0: no set has been received
+    std::vector<Sent> sent_;     // the values in the pending request
     std::string problem_;
 };
 

@@ -3,7 +3,7 @@
 // An answer is dropped in these cases: another world or island is shown meanwhile; the poll was reset or has sent
 // another request; the poll was destroyed. A request without an answer is sent again after `answer_timeout`.
 //
-// Owner        a panel, or the IslandView of a pane; the Poll may be destroyed before the answer arrives.
+// Owner        a panel, or IslandData; the Poll may be destroyed before the answer arrives.
 // Threads      none; used by the thread that draws.
 #pragma once
 

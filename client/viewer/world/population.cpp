@@ -9,20 +9,12 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::uint32_t no_founder = ~std::uint32_t{0}; // the ancestor is an organism that a user placed
-
 std::uint32_t number_at(std::string_view bytes, std::size_t index) {
     std::uint32_t number = 0;
     for (unsigned i = 0; i < 4; ++i) {
         number |= std::uint32_t{static_cast<std::uint8_t>(bytes[4 * index + i])} << (8 * i);
     }
     return number;
-}
-
-void append(std::string_view bytes, std::size_t column, std::size_t count, std::vector<std::uint32_t>& to) {
-    for (std::size_t i = 0; i < count; ++i) {
-        to.push_back(number_at(bytes, column * count + i));
-    }
 }
 
 void append(std::string_view bytes, std::size_t column, std::size_t count, std::vector<float>& to) {
@@ -72,15 +64,6 @@ std::optional<std::string> Population::add(const evod::v1::Population& page) {
     if (page.targets().size() != 8 * count) {
         return wrong("targets", page.targets().size(), 8 * count);
     }
-    // Either all pages of a population contain parents and founders, or none does.
-    const bool parents_expected = begun_ ? has_parents() : !page.parents().empty();
-    if (page.parents().size() != (parents_expected ? 8 * count : 0)) {
-        return wrong("parents", page.parents().size(), parents_expected ? 8 * count : 0);
-    }
-    const bool founders_expected = begun_ ? !founders_.empty() : !page.founders().empty();
-    if (page.founders().size() != (founders_expected ? 4 * count : 0)) {
-        return wrong("founders", page.founders().size(), founders_expected ? 4 * count : 0);
-    }
     for (const auto& [field, floats] : {std::pair<const char*, const std::string&>{"genes", page.genes()},
                                         {"forces", page.forces()},
                                         {"targets", page.targets()}}) {
@@ -101,12 +84,6 @@ std::optional<std::string> Population::add(const evod::v1::Population& page) {
     for (std::size_t column = 0; column < 2; ++column) {
         append(page.forces(), column, count, forces_[column]);
         append(page.targets(), column, count, targets_[column]);
-        if (parents_expected) {
-            append(page.parents(), column, count, parents_[column]);
-        }
-    }
-    if (founders_expected) {
-        append(page.founders(), 0, count, founders_);
     }
     choices_.insert(choices_.end(), page.choices().begin(), page.choices().end());
     if (complete()) {
@@ -128,40 +105,6 @@ void Population::finish() {
         }
         ranges_.push_back(range);
     }
-    families_ = Families{founders_};
-}
-
-std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {
-    std::vector<std::uint32_t> children;
-    for (std::uint32_t id = 0; id < parents_[0].size(); ++id) {
-        if (parents_[0][id] == parent || parents_[1][id] == parent) {
-            children.push_back(id);
-        }
-    }
-    return children;
-}
-
-std::optional<std::vector<std::uint32_t>> living(const Population& population,
-                                                 const codec::ReceivedSnapshot* snapshot) {
-    std::vector<std::uint32_t> ids;
-    for (std::uint32_t id = 0; id < population.size(); ++id) {
-        if (population.choice(id) != evod::v1::CHOICE_UNSPECIFIED) {
-            ids.push_back(id);
-        }
-    }
-    if (!ids.empty()) {
-        return ids;
-    }
-    if (snapshot == nullptr || snapshot->about.generation() != population.generation() ||
-        snapshot->entities->organisms.id.size() != snapshot->about.live().alive_count()) {
-        return std::nullopt;
-    }
-    for (const std::uint32_t id : snapshot->entities->organisms.id) {
-        if (id < population.size()) {
-            ids.push_back(id);
-        }
-    }
-    return ids;
 }
 
 } // namespace evod::viewer

@@ -1,4 +1,4 @@
-// Population: the genes, parents and behaviour of one generation on one island, in columns indexed by organism id.
+// Population: the genes and behaviour of one generation on one island, in columns indexed by organism id.
 //
 // It is assembled from the pages that the server sends in answer to GetPopulation. Each page is validated.
 //
@@ -6,7 +6,6 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
-#include "client/viewer/world/families.h"
 #include "evod/v1/commands.pb.h"
 #include "proto/codec/snapshot_codec.h"
 
@@ -55,16 +54,9 @@ class Population {
     std::span<const float> force_y() const { return forces_[1]; }
     std::span<const float> target_x_px() const { return targets_[0]; }
     std::span<const float> target_y_px() const { return targets_[1]; }
-    bool has_parents() const { return !parents_[0].empty(); }
-    std::uint32_t first_parent(std::uint32_t id) const { return parents_[0][id]; }
-    std::uint32_t second_parent(std::uint32_t id) const { return parents_[1][id]; }
 
     // The following functions require a complete population.
     Range range(std::size_t gene) const { return ranges_[gene]; }
-    /// Returns the families by ancestor in the first generation. Empty if the server sends no founders.
-    const Families& families() const { return families_; }
-    /// Returns the children of an organism of the previous generation, ordered by id.
-    std::vector<std::uint32_t> children_of(std::uint32_t parent) const;
 
   private:
     void finish();
@@ -73,22 +65,9 @@ class Population {
     std::uint64_t generation_ = 0, generation_tick_ = 0;
     std::size_t organism_count_ = 0;
     std::vector<std::vector<float>> genes_;
-    std::array<std::vector<std::uint32_t>, 2> parents_; // by id; empty in the first generation
-    std::vector<std::uint32_t> founders_;               // empty if the server sends none
     std::vector<std::uint8_t> choices_;
     std::array<std::vector<float>, 2> forces_, targets_;
     std::vector<Range> ranges_;
-    Families families_;
 };
-
-/// Returns the ids of the living organisms of a population, in increasing order. Returns nullopt if it is unknown which
-/// organisms live.
-///
-/// While the generation runs, an organism lives if it has a choice (seek, flee, wander). After the end of the
-/// generation no organism has a choice. The organisms in the snapshot are then the living ones, provided that it is of
-/// this generation and contains the whole island.
-///
-/// snapshot  the newest snapshot of the same island and run; null: there is none
-std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::ReceivedSnapshot* snapshot);
 
 } // namespace evod::viewer

@@ -53,14 +53,13 @@ void PopulationPoll::take(const evod::v1::Population& page) {
     }
     if (!ended) {
         complete_ = std::move(incomplete_);
-        ++complete_count_;
     }
     restart();
     poll_.wait(std::max<Clock::duration>(interval_, 4 * (Clock::now() - restarted_)));
 }
 
 std::string PopulationPoll::problem() const {
-    return poll_.is_unsupported()    ? "This server sends no genes, lineages and forces; a newer version does"
+    return poll_.is_unsupported()    ? "This server sends no genes and forces; a newer version does"
            : poll_.problem().empty() ? unreadable_
                                      : poll_.problem();
 }

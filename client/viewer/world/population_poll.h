@@ -5,7 +5,7 @@
 // first page. Without this wait, a large population of a fast world would be requested continuously and use the
 // bandwidth of the snapshots.
 //
-// Owner        the panel or IslandView that shows the population.
+// Owner        IslandData.
 // Threads      none; used by the thread that draws.
 #pragma once
 
@@ -42,8 +42,6 @@ class PopulationPoll {
 
     /// Returns the last complete population; null until one has been received.
     const Population* complete() const { return complete_ ? &*complete_ : nullptr; }
-    /// Returns the number of complete populations received so far.
-    std::uint64_t complete_count() const { return complete_count_; }
     /// Returns why the population is unknown, as a sentence. Empty if it is known or has been requested.
     std::string problem() const;
     /// Returns whether the server does not support GetPopulation.
@@ -58,7 +56,6 @@ class PopulationPoll {
     Poll poll_;
     Population incomplete_;
     std::optional<Population> complete_;
-    std::uint64_t complete_count_ = 0;
     Clock::time_point restarted_{};
     std::string unreadable_; // what is wrong with the last page; empty: nothing
 };

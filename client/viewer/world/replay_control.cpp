@@ -1,6 +1,6 @@
 #include "client/viewer/world/replay_control.h"
 
-#include "client/viewer/world/new_world.h"
+#include "client/viewer/world/world_names.h"
 
 #include <algorithm>
 #include <chrono>
@@ -33,7 +33,6 @@ void ReplayControl::open(evod::v1::RunMoment at) {
     if (info() != nullptr || opening()) {
         return;
     }
-    birth_.reset();
     open_refusal_.reset();
     evod::v1::Request request;
     request.mutable_open_replay()->set_world(feed_.world());
@@ -49,7 +48,6 @@ void ReplayControl::take_opened() {
     const auto response = opening_.get();
     const bool at_start = std::exchange(opening_at_start_, false);
     if (!server_.report_if_refused(response)) {
-        birth_.reset();
         if (at_start) {
             open_refusal_ = refusal_of(response);
         }
@@ -57,9 +55,7 @@ void ReplayControl::take_opened() {
         close(response->world().name());
     } else {
         const evod::v1::WorldInfo& world = response->world();
-        const std::optional<Birth> birth = birth_;
         show(world.name());
-        birth_ = birth;
         present_ = world.replay().replay_of();
         feed_.take_info(world);
         evod::v1::SubscribeEvents subscription;
@@ -75,12 +71,8 @@ void ReplayControl::close(const std::string& world) {
     server_.connection().send(std::move(request));
 }
 
-void ReplayControl::leave(const std::string& next_world) {
-    if (next_world != present_) {
-        forked_.clear();
-    }
+void ReplayControl::leave() {
     seeks_.clear();
-    birth_.reset();
     open_refusal_.reset();
     if (present_) {
         server_.connection().unsubscribe(own_events_);
@@ -90,7 +82,7 @@ void ReplayControl::leave(const std::string& next_world) {
 }
 
 void ReplayControl::show(std::string world) {
-    leave(world);
+    leave();
     feed_.show(std::move(world), feed_.island());
 }
 
@@ -106,13 +98,6 @@ void ReplayControl::update(WorldFeed::Clock::time_point now) {
         range_requested_ = now;
         feed_.request_statistics();
     }
-    select_newborn();
-}
-
-void ReplayControl::apply(const evod::v1::Event& event) {
-    if (event.has_world_deleted() && event.world() == forked_) {
-        forked_.clear();
-    }
 }
 
 bool ReplayControl::at_end() const {
@@ -125,7 +110,6 @@ bool ReplayControl::at_end() const {
 // ---- seeking ---------------------------------------------------------------------------------------------------
 
 void ReplayControl::seek(evod::v1::RunMoment to) {
-    birth_.reset();
     if (info() == nullptr) {
         return;
     }
@@ -169,32 +153,6 @@ void ReplayControl::seek_generations(int by) {
     seek(std::move(moment));
 }
 
-void ReplayControl::show_birth(std::uint64_t generation, std::uint32_t organism) {
-    if (opening()) {
-        return;
-    }
-    evod::v1::RunMoment at;
-    at.set_generation(generation);
-    if (info() != nullptr) {
-        seek(std::move(at));
-    } else {
-        open(std::move(at));
-    }
-    if (opening() || target() != nullptr) {
-        birth_ = {generation, organism};
-    }
-}
-
-/// Selects the organism of show_birth() when the first snapshot of its generation has arrived.
-void ReplayControl::select_newborn() {
-    const codec::ReceivedSnapshot* snapshot = feed_.snapshot();
-    if (birth_ && info() != nullptr && !opening() && snapshot != nullptr &&
-        snapshot->about.generation() == birth_->generation) {
-        feed_.select(birth_->organism);
-        birth_.reset();
-    }
-}
-
 // ---- forking ---------------------------------------------------------------------------------------------------
 
 void ReplayControl::fork() {
@@ -224,7 +182,7 @@ void ReplayControl::send_fork(const std::string& name) {
     request.mutable_fork_world()->set_name(name);
     server_.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
         if (server_.report_if_refused(response)) {
-            forked_ = new_fork_ = name;
+            new_fork_ = name;
             server_.notice("Forked the world " + name + " from this moment");
         }
     });

@@ -3,6 +3,8 @@
 // The server provides a replay as a separate world beside the live one. The replay belongs to this session:
 // ReplayControl opens and closes it, and the session may command it in any role.
 //
+// It has more than 30 members, because opening, seeking, forking and returning change the same state.
+//
 // Owner        ViewedWorld.
 // Threads      used by the thread that draws.
 #pragma once
@@ -38,10 +40,6 @@ class ReplayControl {
     /// Seeks to the first tick of the generation that is `by` after the shown one, or after the target generation of a
     /// running seek.
     void seek_generations(int by);
-    /// Shows the first tick of a generation, in a replay, and selects an organism of the viewed island as soon as this
-    /// generation is shown. Opens a replay if a live world is viewed.
-    void show_birth(std::uint64_t generation, std::uint32_t organism);
-
     /// Returns the tick range of the viewed replay, whether it was opened here or is served from a run file; null for a
     /// live world.
     const evod::v1::Replay* info() const { return feed_.replay(); }
@@ -59,9 +57,6 @@ class ReplayControl {
     void fork();
     /// Returns the name of the fork that the server has created, once; empty if there is no new one.
     std::string take_new_fork() { return std::exchange(new_fork_, {}); }
-    /// Returns the newest world forked from the viewed world, its replay or its live world. Empty if there is none or
-    /// it has been deleted.
-    const std::string& forked() const { return forked_; }
 
     // ViewedWorld calls the following functions.
 
@@ -71,28 +66,21 @@ class ReplayControl {
     /// problem.
     const std::optional<std::string>& open_refusal() const { return open_refusal_; }
     /// Clears all data about the viewed world and closes its replay. Call before another world is shown.
-    void leave(const std::string& next_world);
+    void leave();
     /// Shows the replay once the server has opened it. Requests its tick range once a second, because it grows with the
     /// live world.
     void update(WorldFeed::Clock::time_point now);
-    void apply(const evod::v1::Event& event);
 
   private:
     void show(std::string world);
     void send_fork(const std::string& name);
     void send_seek(std::optional<evod::v1::RunMoment> to);
     void take_opened();
-    void select_newborn();
     void close(const std::string& world);
 
     ServerConnection& server_;
     WorldFeed& feed_;
     SeekQueue seeks_;
-    struct Birth {
-        std::uint64_t generation = 0;
-        std::uint32_t organism = 0;
-    };
-    std::optional<Birth> birth_;          // the organism to select when its generation is shown
     std::optional<std::string> present_;  // the live world, while its replay is shown
     core::SubscriptionHandle own_events_; // events of the replay, which a subscription to all worlds does not include
     std::future<core::Result<evod::v1::Response>> opening_; // the pending answer to OpenReplay
@@ -100,7 +88,7 @@ class ReplayControl {
     bool opening_at_start_;                                 // the pending replay was requested at the start of evoview
     std::optional<std::string> open_refusal_;
     WorldFeed::Clock::time_point range_requested_{};
-    std::string forked_, new_fork_;
+    std::string new_fork_;
 };
 
 } // namespace evod::viewer

@@ -4,6 +4,8 @@
 // WorldInfo. Until a request is answered, its effect is assumed. If a key is pressed again before the answer arrives,
 // it therefore acts on the state that the window shows.
 //
+// It has more than 30 members: a function for each command, and a value for each effect that is assumed.
+//
 // Owner        WorldFeed.
 // Threads      none.
 #pragma once

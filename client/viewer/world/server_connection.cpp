@@ -44,12 +44,7 @@ std::optional<evod::v1::Welcome> ServerConnection::take_welcome() {
     connected_count_ = now.connected_count;
     const evod::v1::Welcome welcome = now.welcome.value_or(evod::v1::Welcome{});
     role_ = welcome.role();
-    features_.assign(welcome.features().begin(), welcome.features().end());
     return welcome;
-}
-
-bool ServerConnection::supports(std::string_view feature) const {
-    return std::ranges::find(features_, feature) != features_.end();
 }
 
 std::string ServerConnection::problem() const {

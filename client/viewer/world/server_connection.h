@@ -59,9 +59,6 @@ class ServerConnection {
     /// Returns whether this session may create worlds. True until the server has reported the role.
     bool may_create() const { return role_ == evod::v1::ROLE_ADMIN || role_ == evod::v1::ROLE_UNSPECIFIED; }
 
-    /// Returns whether the server has an optional feature, such as "place". False until it has answered.
-    bool supports(std::string_view feature) const;
-
     /// Adds a notice: a sentence that the window shows for some seconds.
     void notice(std::string text) { notices_.push_back(std::move(text)); }
     /// Adds a notice if the request was refused or not answered. Returns whether the request was accepted.
@@ -80,7 +77,6 @@ class ServerConnection {
     std::vector<Unanswered> unanswered_;
     std::uint64_t connected_count_ = 0; // value at the last take_welcome()
     evod::v1::Role role_ = evod::v1::ROLE_UNSPECIFIED;
-    std::vector<std::string> features_;
     std::vector<std::string> notices_;
 };
 

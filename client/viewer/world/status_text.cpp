@@ -23,14 +23,15 @@ std::string capitalised(std::string text) {
     return text;
 }
 
-std::string speed_text(const evod::v1::Speed& speed) {
-    if (speed.max()) {
-        return "max";
-    }
-    const double factor = speed.real_time_factor();
+std::string speed_text(double factor) {
     // Speeds below 1 are shown as fractions, because 1/8× is easier to read than 0.125×.
     const double inverse = factor > 0 ? 1 / factor : 0;
-    return factor > 0 && factor < 1 && inverse == std::round(inverse) ? print("1/%g×", inverse) : print("%g×", factor);
+    return factor > 0 && factor < 1 && inverse == std::round(inverse) ? print("1/%g×", inverse)
+                                                                      : shown_number(factor) + "×";
+}
+
+std::string speed_text(const evod::v1::Speed& speed) {
+    return speed.max() ? "max" : speed_text(speed.real_time_factor());
 }
 
 std::string storage_text(const evod::v1::Storage& storage) {
@@ -79,16 +80,26 @@ std::string replay_label(const evod::v1::Replay& replay) {
     return replay.replay_of().empty() ? "REPLAY" : "REPLAY of " + replay.replay_of();
 }
 
-std::string place_text(const evod::v1::SnapshotFrame& snapshot) {
-    std::string text = snapshot.world();
+std::string shown_text(const std::string& world, const evod::v1::Replay* replay,
+                       const evod::v1::SnapshotFrame* snapshot) {
+    if (replay == nullptr) {
+        return "World " + world;
+    }
+    return "Replay of " + (replay->replay_of().empty() ? "a file" : replay->replay_of()) +
+           (snapshot == nullptr ? "" : ", generation " + with_separators(snapshot->generation()));
+}
+
+std::string place_text(const std::string& world, const evod::v1::SnapshotFrame& snapshot) {
+    std::string text = world;
     if (snapshot.island_count() > 1) {
         text += print(" · island %u of 0–%u", snapshot.island(), snapshot.island_count() - 1);
     }
     return text;
 }
 
-std::string place_and_speed_text(const evod::v1::SnapshotFrame& snapshot, const RunControl& control) {
-    std::string text = place_text(snapshot) + " · " + speed_text(control.speed());
+std::string place_and_speed_text(const std::string& world, const evod::v1::SnapshotFrame& snapshot,
+                                 const RunControl& control) {
+    std::string text = place_text(world, snapshot) + " · " + speed_text(control.speed());
     if (control.state() == evod::v1::RUN_STATE_RUNNING && snapshot.ticks_per_s() > 0) {
         text += " (" + with_separators(static_cast<std::uint64_t>(std::llround(snapshot.ticks_per_s()))) + " ticks/s)";
     }

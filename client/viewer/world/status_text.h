@@ -13,6 +13,7 @@
 namespace evod::viewer {
 
 std::string capitalised(std::string text);            // "the server is …" → "The server is …"
+std::string speed_text(double factor);                // times real time: "4×", "1/4×"
 std::string speed_text(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
 /// Returns the run state with a hint: "running", "waiting – Space runs". A running world may have to wait for the
 /// server's disk (`storage`), or for fitness from clients.
@@ -37,10 +38,18 @@ std::string generation_title(const evod::v1::SnapshotFrame& snapshot);
 /// Returns the label of a replay: "REPLAY of default" for a replay of a live world, "REPLAY" for one of a run file.
 std::string replay_label(const evod::v1::Replay& replay);
 
+/// Returns what the window shows: "World default", "Replay of default, generation 12", "Replay of a file, generation
+/// 12".
+std::string shown_text(const std::string& world, const evod::v1::Replay* replay,
+                       const evod::v1::SnapshotFrame* snapshot);
+
 /// Returns the world and island of a snapshot: "default · island 2 of 0–7".
-std::string place_text(const evod::v1::SnapshotFrame& snapshot);
+///
+/// world  the name of the world; of a replay, the name of its live world
+std::string place_text(const std::string& world, const evod::v1::SnapshotFrame& snapshot);
 /// Returns the world, island and speed: "default · island 2 of 0–7 · 4× (240 ticks/s)".
-std::string place_and_speed_text(const evod::v1::SnapshotFrame& snapshot, const RunControl& control);
+std::string place_and_speed_text(const std::string& world, const evod::v1::SnapshotFrame& snapshot,
+                                 const RunControl& control);
 
 /// Returns the parts of the statistics line, the most important first. A narrow window omits the last parts.
 std::vector<std::string> statistics_texts(const evod::v1::SnapshotFrame& snapshot,

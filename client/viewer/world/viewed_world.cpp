@@ -25,7 +25,6 @@ ViewedWorld::ViewedWorld(const WantedWorld& wanted)
 
 bool ViewedWorld::update(WorldFeed::Clock::time_point now) {
     if (const auto welcome = server.take_welcome()) {
-        own_changes_.clear(); // the events were lost with the connection
         feed.take_storage(welcome->storage());
         if (replay.is_own()) {
             server.notice("The connection was lost, and the replay was closed with it");
@@ -41,7 +40,7 @@ bool ViewedWorld::update(WorldFeed::Clock::time_point now) {
     server.take_answers();
     replay.update(now);
     if (std::string fork = replay.take_new_fork(); !fork.empty()) {
-        beside_ = std::move(fork);
+        show(std::move(fork), feed.island());
     }
     feed.take_events();
     for (const evod::v1::Event& event : feed.events()) {
@@ -52,7 +51,6 @@ bool ViewedWorld::update(WorldFeed::Clock::time_point now) {
 
 void ViewedWorld::take_event(const evod::v1::Event& event) {
     feed.apply(event);
-    replay.apply(event);
     if (event.has_world_created() && refusal()) {
         show(feed.world(), feed.island()); // the new world may be the one that was missing
     }
@@ -60,7 +58,7 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     if (!of_this_world && !event.has_server_going_away()) {
         return;
     }
-    if (!take_own_change(event) && needs_notice(event)) {
+    if (needs_notice(event)) {
         server.notice(capitalised(core::to_text(event)));
     }
     if ((event.has_world_deleted() || event.has_world_damaged()) && of_this_world) {
@@ -70,36 +68,9 @@ void ViewedWorld::take_event(const evod::v1::Event& event) {
     }
 }
 
-void ViewedWorld::change_entities(evod::v1::Request request) {
-    server.send(std::move(request), [this](const core::Result<evod::v1::Response>& response) {
-        if (server.report_if_refused(response)) {
-            own_changes_.push_back(*response);
-        }
-    });
-}
-
-/// Returns whether this session has caused the event by change_entities().
-bool ViewedWorld::take_own_change(const evod::v1::Event& event) {
-    const auto same = [](auto of_event, const auto& of_answer) {
-        of_event.clear_by(); // answers do not contain it
-        return of_event.SerializeAsString() == of_answer.SerializeAsString();
-    };
-    const auto found = std::ranges::find_if(own_changes_, [&](const evod::v1::Response& answer) {
-        return event.has_placed()    ? answer.has_placed() && same(event.placed(), answer.placed())
-               : event.has_removed() ? answer.has_removed() && same(event.removed(), answer.removed())
-                                     : false;
-    });
-    if (found == own_changes_.end()) {
-        return false;
-    }
-    own_changes_.erase(found);
-    return true;
-}
-
 void ViewedWorld::show(std::string world, std::uint32_t island) {
     if (world != feed.world()) {
-        replay.leave(world);
-        own_changes_.clear();
+        replay.leave();
     }
     feed.show(std::move(world), island);
 }
@@ -109,25 +80,16 @@ void ViewedWorld::show_next_world() {
         next_world_wanted_ = true; // the request is sent as soon as the server has answered the Hello
         return;
     }
-    find_next_world([this](const std::optional<std::string>& world) {
-        if (world) {
-            show(*world, 0);
-        } else {
-            server.notice("There is no other world: New world … in the panel Worlds (F2) creates one");
-        }
-    });
-}
-
-void ViewedWorld::find_next_world(std::function<void(const std::optional<std::string>& world)> found) {
-    if (!server.was_connected()) {
-        server.notice("The worlds are not known yet: not connected to the server");
-        return;
-    }
     evod::v1::Request request;
     request.mutable_list_worlds();
-    server.send(std::move(request), [this, found = std::move(found)](const core::Result<evod::v1::Response>& response) {
-        if (server.report_if_refused(response)) {
-            found(world_after_this(response->worlds()));
+    server.send(std::move(request), [this](const core::Result<evod::v1::Response>& response) {
+        if (!server.report_if_refused(response)) {
+            return;
+        }
+        if (const auto next = world_after_this(response->worlds())) {
+            show(*next, 0);
+        } else {
+            server.notice("There is no other world; the browser page creates one");
         }
     });
 }
@@ -144,34 +106,6 @@ std::optional<std::string> ViewedWorld::world_after_this(const evod::v1::WorldLi
     const auto here = std::ranges::find(names, replay.present().value_or(feed.name()));
     const auto next = here == names.end() || std::next(here) == names.end() ? names.begin() : std::next(here);
     return next == here || next == names.end() ? std::nullopt : std::optional{*next};
-}
-
-void ViewedWorld::create(evod::v1::Request request, bool beside, std::function<void(const std::string& refusal)> done) {
-    server.send(
-        std::move(request), [this, beside, done = std::move(done)](const core::Result<evod::v1::Response>& response) {
-            const std::string refusal = refusal_of(response);
-            done(refusal);
-            if (!refusal.empty()) {
-                return;
-            }
-            const evod::v1::WorldInfo& created = response->world();
-            server.notice("Created the world " + created.name() + ", with seed " + std::to_string(created.seed()));
-            if (beside) {
-                beside_ = created.name();
-            } else {
-                show(created.name(), 0);
-            }
-        });
-}
-
-void ViewedWorld::remove(const std::string& name) {
-    evod::v1::Request request;
-    request.mutable_delete_world()->set_world(name);
-    server.send(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
-        if (server.report_if_refused(response) && (name == feed.world() || name == feed.name())) {
-            show_next_world();
-        }
-    });
 }
 
 std::string ViewedWorld::page() const {

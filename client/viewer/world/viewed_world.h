@@ -1,9 +1,9 @@
-// ViewedWorld: the world that a pane shows. It has four parts: the connection to the server, the data that the server
-// reports about the world, the commands to the world, and its replays.
+// ViewedWorld: the world that the window shows. It has four parts: the connection to the server, the data that the
+// server reports about the world, the commands to the world, and its replays.
 //
 // No function blocks. Requests are only sent, and update() processes everything received since the last call.
 //
-// Owner        a pane.
+// Owner        WorldView.
 // Threads      used by the thread that draws; core::Connection has its own thread.
 #pragma once
 
@@ -13,11 +13,8 @@
 #include "client/viewer/world/world_feed.h"
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace evod::viewer {
 
@@ -36,25 +33,6 @@ class ViewedWorld {
     void show(std::string world, std::uint32_t island);
     /// Shows the world after this one in the server's list.
     void show_next_world();
-    /// Asks the server which world comes after this one in its list. A later update() calls the handler with the name
-    /// of that world, or with nullopt if there is no other world.
-    void find_next_world(std::function<void(const std::optional<std::string>& world)> found);
-
-    /// Creates a world and shows it, here or in the other half of the window. A later update() calls the handler with
-    /// the reason why the server has refused the request, or with an empty text.
-    void create(evod::v1::Request request, bool beside, std::function<void(const std::string& refusal)> done);
-    /// Deletes a world. If it is the viewed one, shows the next world.
-    void remove(const std::string& name);
-    /// Returns the world that was created or forked to be shown in the other half, once; empty if there is none.
-    std::string take_beside() { return std::exchange(beside_, {}); }
-
-    /// Sends a Place or Remove. The event about it causes no notice, unlike those of other sessions.
-    void change_entities(evod::v1::Request request);
-
-    /// Makes the window offer to create a second world, to be shown beside this one.
-    void offer_new_world() { new_world_offered_ = true; }
-    bool take_new_world_offer() { return std::exchange(new_world_offered_, false); }
-
     /// Opens a replay of the world at the tick shown, or returns from it to the live world.
     void toggle_replay();
     /// Shows the first tick of a generation of the run, in a replay.
@@ -79,11 +57,6 @@ class ViewedWorld {
     void take_event(const evod::v1::Event& event);
     std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds) const;
 
-    bool take_own_change(const evod::v1::Event& event);
-
-    std::string beside_;
-    std::vector<evod::v1::Response> own_changes_; // answers to change_entities() whose events have not arrived
-    bool new_world_offered_ = false;
     bool next_world_wanted_ = false; // show the next world as soon as connected
 };
 

@@ -4,6 +4,8 @@
 // WorldFeed has one subscription to snapshots. While a view is set, it has a second one for the minimap, which receives
 // a density of the whole island once a second.
 //
+// It has more than 30 members, because every panel and strip reads what the server reports in this one place.
+//
 // Owner        ViewedWorld.
 // Threads      used by the thread that draws.
 #pragma once

@@ -37,11 +37,11 @@ class SharedIslands final : public Islands {
     Advanced advance(const parameters::Parameters& parameters, GenerationTicks ticks, base::Executor& executor,
                      std::vector<DiedOut>& died_out) override {
         use(parameters);
-        Meeting met = part_.perform(order(Advance{ticks}), executor);
-        died_out = std::move(met.died_out);
-        change(met.tick);
-        Advanced advanced{.tick = met.tick, .alive_count = 0};
-        for (const IslandSummary& island : met.summaries) {
+        ExchangedResults results = part_.perform(order(Advance{ticks}), executor);
+        died_out = std::move(results.died_out);
+        change(results.tick);
+        Advanced advanced{.tick = results.tick, .alive_count = 0};
+        for (const IslandSummary& island : results.summaries) {
             advanced.alive_count += island.alive_count;
         }
         return advanced;

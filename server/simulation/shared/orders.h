@@ -144,15 +144,15 @@ struct Message {
     static void visit(auto& message, auto&& each) { each(message.dropped, message.world, message.order); }
 };
 
-/// What every process learns about the islands of another one.
-struct Meeting {
+/// The results of an order that every process sends to all others.
+struct ExchangedResults {
     bool fits = true;                   // memory suffices
     std::uint32_t tick = 0;             // Advance: the last tick that was performed
     std::vector<DiedOut> died_out = {}; // Advance
     EntityIds placed = {};              // Place, from the process that has the island
     std::vector<IslandSummary> summaries = {};
-    static void visit(auto& meeting, auto&& each) {
-        each(meeting.fits, meeting.tick, meeting.died_out, meeting.placed, meeting.summaries);
+    static void visit(auto& results, auto&& each) {
+        each(results.fits, results.tick, results.died_out, results.placed, results.summaries);
     }
 };
 /// An island as rank 0 gets it.

@@ -107,10 +107,10 @@ std::vector<std::vector<T>> Part::divide(std::vector<T> of_all) const {
     return lists;
 }
 
-Meeting Part::meet(Meeting own) {
+ExchangedResults Part::exchange_results(ExchangedResults own) {
     own.summaries.assign(islands_.summaries().begin(), islands_.summaries().end());
-    Meeting all;
-    for (Meeting& part : gather(exchange_, own)) {
+    ExchangedResults all;
+    for (ExchangedResults& part : gather(exchange_, own)) {
         all.fits &= part.fits;
         all.tick = std::max(all.tick, part.tick);
         std::ranges::copy(part.died_out, std::back_inserter(all.died_out));
@@ -142,7 +142,7 @@ bool Part::perform(const Begin& order, base::Executor& executor, BredIslands bre
     } catch (const std::bad_alloc&) {
         fits = false; // the other processes have to learn it
     }
-    return meet({.fits = fits}).fits;
+    return exchange_results({.fits = fits}).fits;
 }
 
 void Part::perform(const Restore& order, base::Executor& executor, const WorldState& state) {
@@ -161,7 +161,7 @@ void Part::perform(const Restore& order, base::Executor& executor, const WorldSt
     own.moment.generation_tick = order.tick;
     own.parameters.active = order.parameters;
     islands_.restore(parameters_, own, executor);
-    (void)meet();
+    (void)exchange_results();
 }
 
 std::vector<IslandShape> Part::shapes() const {
@@ -172,11 +172,11 @@ std::vector<IslandShape> Part::shapes() const {
     return shapes;
 }
 
-Meeting Part::perform(const Advance& order, base::Executor& executor) {
-    Meeting own;
+ExchangedResults Part::perform(const Advance& order, base::Executor& executor) {
+    ExchangedResults own;
     // A process whose organisms have all died stops early. Its islands would not change in the other ticks.
     own.tick = islands_.advance(parameters_, order.ticks, executor, own.died_out).tick;
-    return meet(std::move(own));
+    return exchange_results(std::move(own));
 }
 
 std::vector<GenerationStatistics> Part::perform(const EndGeneration& order, base::Executor& executor,
@@ -189,19 +189,19 @@ std::vector<GenerationStatistics> Part::perform(const EndGeneration& order, base
 }
 
 bool Part::perform(const TurnOver& order, base::Executor& executor) {
-    bool fits = true, have_met = order.routes.empty();
+    bool fits = true, migrants_exchanged = order.routes.empty();
     try {
         islands_.turn_over(parameters_, order.generation, order.routes, executor, [&](std::vector<Migrants>& migrants) {
             carry(order.routes, migrants);
-            have_met = true;
+            migrants_exchanged = true;
         });
     } catch (const std::bad_alloc&) {
-        if (!have_met) {
+        if (!migrants_exchanged) {
             throw; // the others wait for migrants
         }
         fits = false;
     }
-    return meet({.fits = fits}).fits;
+    return exchange_results({.fits = fits}).fits;
 }
 
 void Part::carry(std::span<const evolution::MigrationRoute> routes, std::vector<Migrants>& migrants) const {
@@ -223,18 +223,18 @@ void Part::carry(std::span<const evolution::MigrationRoute> routes, std::vector<
 }
 
 EntityIds Part::perform(const Place& order) {
-    Meeting own;
+    ExchangedResults own;
     if (islands_.holds(order.command.island)) {
         own.placed = islands_.place(order.command, parameters_, order.tick);
     }
-    return meet(std::move(own)).placed;
+    return exchange_results(std::move(own)).placed;
 }
 
 void Part::perform(const Remove& order) {
     if (islands_.holds(order.command.island)) {
         islands_.remove(order.command, order.tick);
     }
-    (void)meet();
+    (void)exchange_results();
 }
 
 std::vector<SentIsland> Part::perform(const Bring& order) const {

@@ -27,7 +27,7 @@ class Part {
     void perform(const UseParameters& order) { parameters_ = order.parameters; }
     void perform(const Restore& order, base::Executor& executor, const WorldState& state = {});
     /// Returns the last tick that any process has performed, and what has died out.
-    Meeting perform(const Advance& order, base::Executor& executor);
+    ExchangedResults perform(const Advance& order, base::Executor& executor);
     std::vector<GenerationStatistics> perform(const EndGeneration& order, base::Executor& executor,
                                               std::span<const std::vector<double>> given = {});
     /// Returns whether memory suffices in all processes.
@@ -55,8 +55,8 @@ class Part {
     std::vector<std::vector<T>> divide(std::vector<T> of_all) const;
     /// The shapes of the islands of this process.
     std::vector<IslandShape> shapes() const;
-    /// Exchanges what every process learns about the islands. Returns it for all of them.
-    Meeting meet(Meeting own = {});
+    /// Sends the results of this process to all others. Returns the results of all processes together.
+    ExchangedResults exchange_results(ExchangedResults own = {});
     /// Exchanges the migrants of the routes that begin in one process and end in another.
     void carry(std::span<const evolution::MigrationRoute> routes, std::vector<Migrants>& migrants) const;
 

@@ -1,8 +1,8 @@
 // Each view option draws exactly what it should, at the right place.
 //
 // Draws the snapshot of a test server off the screen, under Xvfb.
-#include "client/viewer/panes/window_renderer.h"
 #include "client/viewer/shell/window.h"
+#include "client/viewer/view/window_renderer.h"
 #include "tests/support/waiting.h"
 #include "tests/system/viewer/support/expected_frame.h"
 #include "tests/system/viewer/support/known_snapshot.h"
@@ -24,29 +24,29 @@ struct IslandViewTest : testing::Test {
         Options options;
         options.connection.server = core::parse_endpoint(server.address()).value();
         options.world = "default";
-        panes.emplace(wanted_of(options), std::nullopt, default_options({Skin::Classic}));
+        view.emplace(wanted_of(options), default_options({Skin::Classic}));
     }
 
     sf::Image draw() {
-        return renderer.capture(*panes,
+        return renderer.capture(*view,
                                 {.width_pixels = window_width, .height_pixels = window_height, .now = Clock::now()});
     }
     /// Draws until the condition holds, and once more.
     template <class Condition>
     sf::Image draw_when(Condition condition) {
         EXPECT_TRUE(wait_until(condition, [this] {
-            panes->update(Clock::now());
+            view->world.update(Clock::now());
             draw();
             take_a_nap();
         }));
         return draw();
     }
     sf::Image draw_with_population() {
-        return draw_when([&] { return island_view().population() != nullptr; });
+        return draw_when([&] { return view->island_data.population() != nullptr; });
     }
-    ViewedWorld& world() { return panes->focused().world; }
-    IslandView& island_view() { return panes->focused().island_view; }
-    Camera& camera() { return panes->focused().camera(); }
+    ViewedWorld& world() { return view->world; }
+    IslandView& island_view() { return view->island_view; }
+    Camera& camera() { return view->camera(); }
 
     Colour at(const sf::Image& image, Point world) {
         const Point pixel = camera().to_screen(world);
@@ -66,7 +66,7 @@ struct IslandViewTest : testing::Test {
     using Clock = WindowRenderer::Clock;
     const codec::ReceivedSnapshot snapshot = codec::decode_plain(known_snapshot()).value();
     PlayingServer server{known_snapshot()};
-    std::optional<Panes> panes; // destroyed before the server, which waits for the disconnection
+    std::optional<WorldView> view; // destroyed before the server, which waits for the disconnection
     sf::Context context{context_settings(), 1, 1};
     WindowRenderer renderer;
 };
@@ -98,16 +98,6 @@ TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsGene) {
     std::vector<Colour> colours; // the gene is 100 + id, and ids are 0 to 9
     for (const std::uint32_t id : snapshot.entities->organisms.id) {
         colours.push_back(palette::at(palette::Ramp::Violet, std::round(id / 9.0 * 255) / 255));
-    }
-    expect_colours(image, colours);
-}
-
-TEST_F(IslandViewTest, EveryOrganismHasTheColourOfItsFamily) {
-    island_view().options.colour_by = ColourBy::Lineage;
-    const sf::Image image = draw_with_population();
-    std::vector<Colour> colours; // founders are 0, 1, 2, 0, …: families of four, three and three
-    for (const std::uint32_t id : snapshot.entities->organisms.id) {
-        colours.push_back(palette::lineages[id % 3]);
     }
     expect_colours(image, colours);
 }
@@ -172,8 +162,7 @@ TEST_F(IslandViewTest, DrawsTheMinimapWhenPartIsOutOfSight) {
 TEST_F(IslandViewTest, AClickSelectsAndHighlightsAnOrganism) {
     draw_when([&] { return world().feed.snapshot() != nullptr; });
     const auto click = [&](Point place) {
-        const Point screen = camera().to_screen(place);
-        renderer.click_at(panes->focused(), screen, renderer.organism_drawn_at(panes->focused(), screen));
+        renderer.select(*view, renderer.organism_drawn_at(*view, camera().to_screen(place)));
     };
     click({502, 300});
     EXPECT_EQ(world().feed.selected(), 4u);
@@ -254,7 +243,7 @@ TEST_F(VividTest, RadiiAreDrawnOfTheSelectedOrganismOnly) {
 TEST_F(VividTest, TheSidebarShowsTheMarksOfTheSkin) {
     const auto sidebar_has = [&](Colour colour) {
         const sf::Image image = renderer.capture(
-            *panes,
+            *view,
             {.width_pixels = window_width, .height_pixels = window_height, .now = Clock::now(), .interactive = true});
         unsigned found = 0;
         for (unsigned y = 0; y < 200; ++y) {

@@ -78,30 +78,6 @@ TEST_F(RecordTest, RecordsAReplayWithoutChangingTheWorld) {
     EXPECT_EQ(state().tick(), 300u);
 }
 
-TEST_F(RecordTest, TwoWorldsAdvanceByTheSameTicks) {
-    make_world(server, "one", 50);
-    make_world(server, "other", 200, 8);
-    // Large enough for the smallest item to be a pixel wide.
-    const Ran ran = run_evoview("--server " + server.address() +
-                                " --world one --skin classic --beside other --size 1280x720 --record " + frames +
-                                " --record-ticks 20 --every 10");
-    ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(frame_count(), 3);
-    const auto halves = side_by_side({0, 0, 1280, 720}, 2);
-    for (std::size_t i = 0; i < 3; ++i) {
-        sf::Image image;
-        ASSERT_TRUE(image.loadFromFile(frames + "/" + frame_file_name(i, 50 + 10 * i)));
-        for (const auto& [world, tick, half] : {std::tuple{"one", 50u, halves[0]}, {"other", 200u, halves[1]}}) {
-            const auto snapshot = replay_snapshot_of(server, world, at_tick(tick + 10 * i));
-            Camera camera;
-            camera.set_viewport(viewport_of(half));
-            camera.set_island(snapshot->about.width_px(), snapshot->about.height_px());
-            const auto mismatch = ExpectedFrame{*snapshot, camera}.compare(image);
-            EXPECT_EQ(mismatch.count, 0u) << world << " " << i << " " << mismatch.first;
-        }
-    }
-}
-
 TEST_F(RecordTest, EndsAtTheEndOfTheReplay) {
     make_world(server, "one", 300);
     const Ran ran = record(frames, "--past 3 --every 50");

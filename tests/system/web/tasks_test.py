@@ -1,4 +1,4 @@
-"""Ten tasks of a lesson in the page. Each takes at most three actions from the first screen: clicks, keys, and choices
+"""Tasks of a lesson in the page. Each takes at most three actions from the first screen: clicks, keys, and choices
 in a list.
 
 The user takes part already. docs/BROWSER.md lists the tasks with their actions.
@@ -163,6 +163,14 @@ class Tasks(Case):
         self.click_island(200, 150)
         placed = self.control.next_event("placed").placed
         self.assertEqual(len(placed.food), 1)
+
+    def test_undo_a_placement(self):
+        self.press("Food")
+        self.click_island(200, 150)
+        placed = self.control.next_event("placed").placed
+        self.browser.wait("evod.app.world().undo.next_undo === 'placed 1 food'", "the placed food in the history")
+        self.act(self.browser.element("body").send_keys, Keys.CONTROL, "z")
+        self.assertEqual(list(self.control.next_event("removed").removed.food), list(placed.food))
 
 
 if __name__ == "__main__":

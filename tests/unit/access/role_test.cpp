@@ -13,22 +13,5 @@ TEST(Role, HasANameThatLeadsBackToIt) {
     EXPECT_EQ(role_named("owner"), std::nullopt);
 }
 
-TEST(Role, NeededForARequestIsThatOfItsRules) {
-    v1::RequestRules rules;
-    rules.set_role(v1::ROLE_VIEWER);
-    EXPECT_EQ(role_needed(rules, false), Role::Viewer);
-    rules.set_role(v1::ROLE_CONTROLLER);
-    EXPECT_EQ(role_needed(rules, false), Role::Controller);
-    EXPECT_EQ(role_needed(rules, true), Role::Controller) << "the rules make no exception for replays";
-    rules.set_viewer_in_own_replay(true);
-    EXPECT_EQ(role_needed(rules, true), Role::Viewer);
-    EXPECT_EQ(role_needed(rules, false), Role::Controller);
-}
-
-TEST(Role, NeededWithoutRulesIsTheHighest) {
-    EXPECT_EQ(role_needed(v1::RequestRules{}, false), Role::Admin);
-    EXPECT_EQ(role_needed(v1::RequestRules{}, true), Role::Admin);
-}
-
 } // namespace
 } // namespace evod::access

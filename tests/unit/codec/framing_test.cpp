@@ -69,7 +69,7 @@ TEST(Body, DamageIsNotReportedAsDepth) {
         EXPECT_EQ(damaged.error().exceeded, ExceededLimit::Nothing) << damaged.error().what;
         EXPECT_NE(damaged.error().what.find("is not a evod.v1.ClientMessage"), std::string::npos);
     }
-    // A string that looks like nested messages is no message.
+    // A string that looks like nested messages is not a message.
     ClientMessage named;
     named.mutable_hello()->set_token("\x12\x04\x12\x02\x12");
     EXPECT_TRUE(parse_body<ClientMessage>(bytes_of(named.SerializeAsString())));
@@ -154,7 +154,7 @@ TEST(FrameReader, ADeclaredLengthTakesNoMemory) {
 
     FrameReader strict{hello_limits};
     strict.feed(encode_header({.channel = Channel::Control, .body_bytes = 5000}));
-    EXPECT_FALSE(strict.next()) << "too long is said before the body has come";
+    EXPECT_FALSE(strict.next()) << "the length is refused before the body arrives";
 }
 
 TEST(FrameReader, FreesTheMemoryOfALongFrame) {

@@ -487,7 +487,7 @@ class MutationSource {
     std::mt19937 random_{20240229};
 };
 
-constexpr std::size_t mutation_count = 10'000;
+constexpr std::size_t mutation_count = 1000;
 
 void record_mutations() {
     std::vector<std::size_t> lines;

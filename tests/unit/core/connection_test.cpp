@@ -272,7 +272,7 @@ TEST(Reconnection, ShowsTheServersLastRefusal) {
     Connection connection{server.options()};
     {
         FakeSession first = server.accept_and_welcome();
-        first.refuse(0, v1::CODE_INVALID_ARGUMENT, "that was no message");
+        first.refuse(0, v1::CODE_INVALID_ARGUMENT, "that was not a message");
         first.send_event(1); // the session went on
     }
     {

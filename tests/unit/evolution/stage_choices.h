@@ -2,7 +2,7 @@
 // set that combines the slowest choices.
 #pragma once
 
-#include "server/evolution/parameters.h"
+#include "server/evolution/ga_parameters.h"
 
 #include <ostream>
 #include <string>

@@ -46,7 +46,7 @@ TEST(Termination, StagnationCountsGenerationsWithoutANewBest) {
     parameters.stagnation_limit = 2;
     EXPECT_EQ(outcome(after({5}), parameters), Outcome::Running);
     EXPECT_EQ(outcome(after({5, 4}), parameters), Outcome::Running);
-    EXPECT_EQ(outcome(after({5, 4, 5}), parameters), Outcome::Stagnation); // a tie is no improvement
+    EXPECT_EQ(outcome(after({5, 4, 5}), parameters), Outcome::Stagnation); // a tie is not an improvement
     EXPECT_EQ(outcome(after({5, 4, 6}), parameters), Outcome::Running);
     EXPECT_EQ(outcome(after({5, 4, 6, 1, 6}), parameters), Outcome::Stagnation);
     EXPECT_EQ(outcome(after({-7, -8, -7}), parameters),

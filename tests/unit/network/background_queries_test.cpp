@@ -16,7 +16,7 @@ class BackgroundQueriesTest : public Loopback {
   protected:
     BackgroundQueriesTest() {
         host.admit = [this](const std::string&, const std::string&) {
-            return access::Visitor{.name = user, .role = role};
+            return access::AuthenticatedUser{.name = user, .role = role};
         };
         host.ended = [this](Session& ended) {
             queries.forget(ended);

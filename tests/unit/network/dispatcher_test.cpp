@@ -274,7 +274,7 @@ TEST_F(DispatcherTest, AReplayIsTakenBackFromTheUserWithTheMost) {
     std::map<std::string, Client*> of;
     const auto come = [&](const std::string& user) {
         host.admit = [user](const std::string&, const std::string&) {
-            return access::Visitor{.name = user, .role = Role::Viewer};
+            return access::AuthenticatedUser{.name = user, .role = Role::Viewer};
         };
         of[user] = &connect(Role::Viewer);
     };

@@ -35,7 +35,7 @@ class Loopback : public testing::Test {
         host.clock = &clock;
         host.limits = limits_message({});
         host.admit = [this](const std::string&, const std::string&) {
-            return access::Visitor{.name = "", .role = role};
+            return access::AuthenticatedUser{.name = "", .role = role};
         };
         host.ended = [this](Session& ended) { sessions.erase(ended.number()); };
     }

@@ -14,7 +14,9 @@ class SessionTableTest : public Loopback {
     SessionTableTest() {
         host.ended = [this](Session& ended) { table.forget(ended); };
         host.make_room = [this](const std::string& account) { return table.make_room(account); };
-        host.admit = [](const std::string& token, const std::string&) { return access::Visitor{.name = token}; };
+        host.admit = [](const std::string& token, const std::string&) {
+            return access::AuthenticatedUser{.name = token};
+        };
     }
     void TearDown() override {
         const Sessions all = table.sessions();
@@ -133,7 +135,7 @@ class EvictionTest : public SessionTableTest {
         little_host.clock = &clock;
         little_host.limits = host.limits;
         little_host.admit = [this](const std::string&, const std::string&) {
-            return access::Visitor{.name = user, .role = Role::Viewer};
+            return access::AuthenticatedUser{.name = user, .role = Role::Viewer};
         };
         little_host.ended = [this](Session& ended) { little_table.forget(ended); };
     }

@@ -1,7 +1,7 @@
 // Assignments for tests: a single one, or one with a valid value other than the default.
 #pragma once
 
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include <gtest/gtest.h>
 

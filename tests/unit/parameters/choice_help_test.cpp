@@ -1,5 +1,5 @@
 #include "server/parameters/choice_help.h"
-#include "server/parameters/parameters.h"
+#include "server/parameters/model_parameters.h"
 
 #include <gmock/gmock.h>
 

@@ -192,7 +192,7 @@ TEST(Step, NeverMovesAnObstacle) {
 class AnywhereOnALargeIsland : public testing::TestWithParam<Integrator> {};
 
 TEST_P(AnywhereOnALargeIsland, TheSameBodiesMoveAlikeBitForBit) {
-    // Away from the walls; shifted by whole position units that are no multiple of a cell.
+    // Away from the walls; shifted by whole position units that are not a multiple of a cell.
     const Coordinate shift_x = to_units(295'000.0) - 1'277, shift_y = to_units(294'500.0) - 91;
     TestBodies near = crowd(400, 0.3, 6, 6, 300, 17);
     near.area = {to_units(300'000.0), to_units(300'000.0)};

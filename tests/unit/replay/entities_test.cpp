@@ -48,7 +48,7 @@ void change_entities(RecordedRun& run, std::mt19937& random, bool remove) {
         }
     }
     run.command(request);
-    for (std::uint32_t id = 0; remove && id < island.fate().cause.size(); ++id) {
+    for (std::uint32_t id = 0; remove && id < island.life_records().cause.size(); ++id) {
         if (island.body_of(id)) {
             v1::Request removal;
             removal.mutable_remove()->set_world("w");

@@ -1,10 +1,10 @@
 #include "server/run_file/checkpoint.h"
 
+#include "server/jobs/thread_pool.h"
 #include "server/replay/archive.h"
 #include "server/replay/rerun.h"
 #include "server/replay/verify.h"
 #include "server/run_file/check.h"
-#include "server/jobs/thread_pool.h"
 #include "tests/support/waiting.h"
 #include "tests/unit/recording/recorded_run.h"
 
@@ -62,7 +62,7 @@ TEST(CheckpointState, ContainsFitnessFromClients) {
     simulation::WorldState state{.moment = {}, .parameters = {}, .islands = {}, .ended = {}};
     state.islands.resize(2);
     for (simulation::IslandState& island : state.islands) {
-        island.fate.begin_generation(3);
+        island.life_records.begin_generation(3);
     }
     state.given_fitness = {{1.5, -2, 1e100}, {7}};
     simulation::WorldState again = state;

@@ -99,11 +99,12 @@ TEST_F(RunFileTest, ReadsBackEverythingThatWasWritten) {
     while (!world.generation_over()) {
         world.advance_tick(executor);
     }
-    const GenerationEnded ended{
-        1,
-        {{world.outcomes()[0].fitness, world.islands()[0].fate().lived_ticks, world.islands()[0].fate().cause},
-         {world.outcomes()[1].fitness, world.islands()[1].fate().lived_ticks, world.islands()[1].fate().cause}},
-        world.history().back()};
+    const GenerationEnded ended{1,
+                                {{world.outcomes()[0].fitness, world.islands()[0].life_records().lived_ticks,
+                                  world.islands()[0].life_records().cause},
+                                 {world.outcomes()[1].fitness, world.islands()[1].life_records().lived_ticks,
+                                  world.islands()[1].life_records().cause}},
+                                world.history().back()};
     world.turn_over(executor);
     const GenerationBegun second{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};
     const JournalEntry entry{

@@ -74,7 +74,7 @@ TEST(Simulations, AForkOfAReplayGoesToItsThread) {
     ASSERT_TRUE(simulations.try_send(CommandMail{simulation::Run{"f", {}}, {}, "run"}));
     const auto live = simulations.mailbox_of("").drain();
     ASSERT_EQ(live.size(), 2u);
-    EXPECT_EQ(std::get<ForkComing>(live[0]).name, "f");
+    EXPECT_EQ(std::get<ForkAnnounced>(live[0]).name, "f");
     EXPECT_TRUE(std::holds_alternative<CommandMail>(live[1]));
     EXPECT_EQ(simulations.mailbox_of("w@1").drain().size(), 1u);
 }

@@ -19,8 +19,8 @@ using physics::to_units;
 
 using support::alpha;
 
-/// One organism beside at most one food item and one poison item. The items are at random places, so the organism is
-/// moved beside them.
+/// One organism next to at most one food item and one poison item. The items are at random places, so the organism is
+/// moved next to them.
 class OneOrganism : public testing::Test {
   protected:
     Items item_at_most_one(bool there, base::Purpose purpose) {
@@ -75,7 +75,7 @@ class OneOrganism : public testing::Test {
     }
 
     Items food, poison, none;
-    Living living;
+    LivingOrganisms living;
     physics::Circles bodies;
     BehaviourRules rules{};
     ChosenForces forces;

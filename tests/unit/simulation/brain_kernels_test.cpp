@@ -4,7 +4,7 @@
 #include "server/base/instructions.h"
 #include "server/base/random.h"
 #include "server/physics/bodies.h"
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 
 #include <gtest/gtest.h>
 

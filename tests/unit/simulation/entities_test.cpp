@@ -1,8 +1,8 @@
 #include "server/simulation/entities.h"
 
 #include "server/base/inline_executor.h"
-#include "server/simulation/laboratory.h"
 #include "server/jobs/thread_pool.h"
+#include "server/simulation/laboratory.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -130,10 +130,10 @@ TEST_F(EntitiesTest, AnOrganismLivesFromThePlacingOn) {
     EXPECT_EQ(island().placed_tick(1), 10u);
     EXPECT_EQ(island().live_statistics().organism_count, 3u);
     advance(25);
-    EXPECT_EQ(island().fate().cause[1], CauseOfDeath::Starved);
-    EXPECT_NEAR(island().fate().lived_ticks[1], 20, 1);
+    EXPECT_EQ(island().life_records().cause[1], CauseOfDeath::Starved);
+    EXPECT_NEAR(island().life_records().lived_ticks[1], 20, 1);
     const auto fitness = island().fitness(world().parameters().active, 35, executor);
-    EXPECT_DOUBLE_EQ(fitness[1], island().fate().lived_ticks[1] * parameters.tick_s);
+    EXPECT_DOUBLE_EQ(fitness[1], island().life_records().lived_ticks[1] * parameters.tick_s);
     EXPECT_NEAR(fitness[2], 25 * parameters.tick_s + 175, 1e-3);
 }
 
@@ -159,8 +159,8 @@ TEST_F(EntitiesTest, ARemovedOrganismIsDead) {
     ASSERT_TRUE(place({}, {organism_at(clear_place(), genes_of())}));
     advance(30);
     ASSERT_TRUE(remove({}, {}, {0}));
-    EXPECT_EQ(island().fate().cause[0], CauseOfDeath::Removed);
-    EXPECT_EQ(island().fate().lived_ticks[0], 30u);
+    EXPECT_EQ(island().life_records().cause[0], CauseOfDeath::Removed);
+    EXPECT_EQ(island().life_records().lived_ticks[0], 30u);
     EXPECT_EQ(world().alive_count(), 1u);
     advance(90);
     ASSERT_TRUE(world().generation_over());
@@ -314,7 +314,7 @@ int change_randomly(Laboratory& laboratory, std::mt19937& random) {
     place.organisms.push_back({x(), y(), {genes.begin(), genes.end()}});
     const Island& there = world.islands()[island];
     RemoveEntities remove{.world = "w", .island = island};
-    const auto organism = static_cast<std::uint32_t>(random() % there.fate().cause.size());
+    const auto organism = static_cast<std::uint32_t>(random() % there.life_records().cause.size());
     if (there.body_of(organism)) {
         remove.organisms.push_back(organism);
     }

@@ -45,7 +45,7 @@ Meadow meadow_at(Coordinate shift_x, Coordinate shift_y) {
 }
 
 TEST(TheFarCorner, HasTheSameMotionsBitForBit) {
-    // By odd numbers of units that are no multiple of a cell or strip.
+    // By odd numbers of units that are not a multiple of a cell or strip.
     const Coordinate shift_x = to_units(295'000.0) - 1'277, shift_y = to_units(294'500.0) - 91;
     Meadow here = meadow_at(0, 0), there = meadow_at(shift_x, shift_y);
     std::size_t eaten = 0;

@@ -22,8 +22,8 @@ TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
     }
     EXPECT_NEAR(now, 200, 1) << "6 health/s: 20 last 200 ticks, to the rounding of floats";
     const std::uint32_t died = now;
-    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
-    EXPECT_EQ(island.fate().lived_ticks[0], died);
+    EXPECT_EQ(island.life_records().cause[0], CauseOfDeath::Starved);
+    EXPECT_EQ(island.life_records().lived_ticks[0], died);
     EXPECT_EQ(island.counts().starved_count, 1u);
     EXPECT_FALSE(island.body_of(0).has_value());
     EXPECT_EQ(island.bodies().id[island.body_of(1).value()], 1u);
@@ -42,7 +42,7 @@ TEST(LossPerTick, IsTheRateTimesTheCostsOfGenes) {
     p.food_radius_cost = 0.1;
     p.poison_radius_cost = 0.3;
     const auto loss = [&](const evolution::BodyGenes& genes) {
-        Living living;
+        LivingOrganisms living;
         living.resize(1);
         living.put(0, genes, p);
         return living.loss_per_tick.front();
@@ -89,9 +89,9 @@ TEST_F(SmallIsland, FitnessIsTheWeightedSum) {
     }
     const auto sum = [&](std::uint32_t id, double second, double of_health, double food, double poison) {
         const bool lives = island.body_of(id).has_value();
-        const double seconds = (lives ? now : island.fate().lived_ticks[id]) * parameters.tick_s;
+        const double seconds = (lives ? now : island.life_records().lived_ticks[id]) * parameters.tick_s;
         return second * seconds + of_health * (lives ? static_cast<double>(health(id)) : 0) +
-               food * island.fate().food_eaten[id] + poison * island.fate().poison_eaten[id];
+               food * island.life_records().food_eaten[id] + poison * island.life_records().poison_eaten[id];
     };
     const std::vector<double> by_default = fitness();
     parameters.fitness_per_second = 0.5;
@@ -103,8 +103,8 @@ TEST_F(SmallIsland, FitnessIsTheWeightedSum) {
     for (std::uint32_t id = 0; id < 30; ++id) {
         EXPECT_EQ(by_default[id], sum(id, 1, 1, 0, 0));
         EXPECT_EQ(weighted[id], sum(id, 0.5, -2, 10, -3.25));
-        food += island.fate().food_eaten[id];
-        poison += island.fate().poison_eaten[id];
+        food += island.life_records().food_eaten[id];
+        poison += island.life_records().poison_eaten[id];
     }
     EXPECT_GT(food, 0u);
     EXPECT_GT(poison, 0u);

@@ -7,7 +7,7 @@
 #include "server/simulation/behaviour.h"
 #include "server/simulation/feeding.h"
 #include "server/simulation/items.h"
-#include "server/simulation/living.h"
+#include "server/simulation/living_organisms.h"
 #include "server/simulation/perception.h"
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct Meadow {
     physics::Area area;
     physics::Circles bodies;
     physics::Boxes boxes;
-    Living living;
+    LivingOrganisms living;
     Items food, poison;
     physics::StepParameters step{.integration =
                                      physics::integration(physics::Integrator::SymplecticEuler, 1.0 / 60, 0.06),

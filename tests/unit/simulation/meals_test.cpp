@@ -13,11 +13,11 @@ TEST_F(SmallIsland, CountsPoisonAsTheCauseOnlyInTheTickOfDeath) {
     begin({chromosome_of(0, 0, 100, 100, 0, 0)});
     tick();
     EXPECT_EQ(island.alive_count(), 0u);
-    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Poisoned);
-    EXPECT_EQ(island.fate().lived_ticks[0], 1u);
-    EXPECT_GT(island.fate().poison_eaten[0], 0u);
+    EXPECT_EQ(island.life_records().cause[0], CauseOfDeath::Poisoned);
+    EXPECT_EQ(island.life_records().lived_ticks[0], 1u);
+    EXPECT_GT(island.life_records().poison_eaten[0], 0u);
     EXPECT_EQ(island.counts().poisoned_count, 1u);
-    EXPECT_EQ(island.counts().poison_eaten, island.fate().poison_eaten[0]);
+    EXPECT_EQ(island.counts().poison_eaten, island.life_records().poison_eaten[0]);
 }
 
 TEST_F(SmallIsland, CountsStarvingLongAfterPoison) {
@@ -28,8 +28,8 @@ TEST_F(SmallIsland, CountsStarvingLongAfterPoison) {
     while (island.alive_count() > 0) {
         tick();
     }
-    EXPECT_GT(island.fate().poison_eaten[0], 0u);
-    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
+    EXPECT_GT(island.life_records().poison_eaten[0], 0u);
+    EXPECT_EQ(island.life_records().cause[0], CauseOfDeath::Starved);
 }
 
 TEST_F(SmallIsland, LivesIfFoodRaisesHealthAboveZeroInTime) {
@@ -38,7 +38,7 @@ TEST_F(SmallIsland, LivesIfFoodRaisesHealthAboveZeroInTime) {
     begin({chromosome_of(0, 0, 100, 0.05f, 0, 0)}); // less than the loss of a tick
     tick();
     ASSERT_EQ(island.alive_count(), 1u);
-    const std::uint32_t meals = island.fate().food_eaten[0];
+    const std::uint32_t meals = island.life_records().food_eaten[0];
     EXPECT_GT(meals, 1u);
     EXPECT_NEAR(health(0), 0.05f - 0.1f + 25 * static_cast<float>(meals), 1e-3);
 }
@@ -50,7 +50,7 @@ TEST_F(SmallIsland, DiesIfHealthIsNotAboveZeroAfterATick) {
     begin({chromosome_of(0, 0, 100, 20, 0, 0)});
     tick();
     EXPECT_EQ(island.alive_count(), 0u);
-    EXPECT_GT(island.fate().food_eaten[0], 0u);
+    EXPECT_GT(island.life_records().food_eaten[0], 0u);
 }
 
 TEST_F(SmallIsland, LimitsHealthToTheCapOnlyAtMeals) {
@@ -78,8 +78,8 @@ TEST_F(SmallIsland, HashCoversEatenItemsThatHaveAWeight) {
         }
         base::StateHash of_eaten;
         for (std::uint32_t id = 0; id < 30; ++id) {
-            const std::uint32_t food = per_food != 0 ? island.fate().food_eaten[id] : 0;
-            const std::uint32_t poison = per_poison != 0 ? island.fate().poison_eaten[id] : 0;
+            const std::uint32_t food = per_food != 0 ? island.life_records().food_eaten[id] : 0;
+            const std::uint32_t poison = per_poison != 0 ? island.life_records().poison_eaten[id] : 0;
             if (food + poison > 0) {
                 of_eaten += base::EntityHash{6, id}.add(food, poison).finish();
             }

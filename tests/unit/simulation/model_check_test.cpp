@@ -55,7 +55,7 @@ History history_of(SelectionMethod selection, std::size_t generations, base::See
         }
         const GenerationStatistics& s = world.history().back().front();
         double lived_s = 0;
-        for (const std::uint32_t ticks : world.island(0).fate().lived_ticks) {
+        for (const std::uint32_t ticks : world.island(0).life_records().lived_ticks) {
             lived_s += (ticks == 0 ? static_cast<double>(world.moment().generation_tick) : ticks) * parameters.tick_s;
         }
         history.push_back({.fitness_mean = s.fitness_mean,

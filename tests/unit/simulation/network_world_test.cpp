@@ -3,8 +3,8 @@
 #include "server/base/elementary.h"
 #include "server/base/inline_executor.h"
 #include "server/base/instructions.h"
-#include "server/simulation/world.h"
 #include "server/jobs/thread_pool.h"
+#include "server/simulation/world.h"
 
 #include <gtest/gtest.h>
 
@@ -78,7 +78,7 @@ TEST_P(NetworkWorlds, DoWhatIsPredicted) {
 }
 
 TEST(NetworkWorld, BreedingNeedsNoMemoryForWeights) {
-    Living living;
+    LivingOrganisms living;
     for (int generation = 0; generation < 2; ++generation) {
         living.clear(3);
         living.resize(5);
@@ -126,7 +126,7 @@ TEST(NetworkWorld, HeadingsArePartOfTheHash) {
     still.advance_tick(executor);
     straight.advance_tick(executor);
     EXPECT_NE(still.hash(), straight.hash());
-    const Living& living = straight.islands()[0].living();
+    const LivingOrganisms& living = straight.islands()[0].living();
     EXPECT_EQ(living.heading.size(), living.health.size());
     EXPECT_EQ(living.weight_count(), 8u * (7 + 1) + 2 * (8 + 1));
 }
@@ -135,7 +135,7 @@ TEST(NetworkWorld, KinematicBodiesStartWithRandomSpeeds) {
     const World world{network("kinematic", 6000), base::Seed{3}}, at_rest{network("newtonian", 6000), base::Seed{3}};
     const auto speed_max = static_cast<float>(world.parameters().active.max_speed_px_s);
     const physics::Circles& bodies = world.islands()[0].bodies();
-    const Living& living = world.islands()[0].living();
+    const LivingOrganisms& living = world.islands()[0].living();
     double sum = 0, squares = 0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const float speed = std::hypot(bodies.velocity_x[i], bodies.velocity_y[i]);

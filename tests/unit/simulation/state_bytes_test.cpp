@@ -20,10 +20,10 @@ WorldState full_state() {
     WorldState state{.moment = {}, .parameters = {}, .islands = {}, .ended = {}};
     state.islands.resize(2);
     IslandState& first = state.islands[0];
-    first.fate = {.lived_ticks = {0, 7},
-                  .cause = {CauseOfDeath::Alive, CauseOfDeath::Starved},
-                  .food_eaten = {1, 2},
-                  .poison_eaten = {3, 4}};
+    first.life_records = {.lived_ticks = {0, 7},
+                          .cause = {CauseOfDeath::Alive, CauseOfDeath::Starved},
+                          .food_eaten = {1, 2},
+                          .poison_eaten = {3, 4}};
     first.counts = {.food_eaten = 9, .poison_eaten = 8, .starved_count = 1, .poisoned_count = 0, .too_fast_count = 6};
     first.placed = {{.genes = {1, 2, 3, 4, 5, 6}, .tick = 5}};
     first.placed_food = 2;
@@ -34,7 +34,7 @@ WorldState full_state() {
     first.food.resize(3);
     first.food[1].x = 77;
     first.poison.resize(1);
-    state.islands[1].fate.begin_generation(1);
+    state.islands[1].life_records.begin_generation(1);
     state.given_fitness = {{1.5, -2}, {}};
     state.ended = {{.generation = 7, .island = 0, .fitness_best = -0.5}, {.generation = 7, .island = 1}};
     state.ended[0].genes[2].mean = 0.25;

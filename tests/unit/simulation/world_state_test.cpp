@@ -2,8 +2,8 @@
 #include "server/simulation/world_state.h"
 
 #include "server/base/inline_executor.h"
-#include "server/simulation/world.h"
 #include "server/jobs/thread_pool.h"
+#include "server/simulation/world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -178,8 +178,8 @@ TEST_F(WorldStateTest, ImpossibleStatesAreRefused) {
     ASSERT_GT(world.alive_count(), 2u);
     const WorldState sound = world.state(executor);
     const auto of = [&](CauseOfDeath cause) {
-        return static_cast<std::size_t>(std::ranges::find(sound.islands[0].fate.cause, cause) -
-                                        sound.islands[0].fate.cause.begin());
+        return static_cast<std::size_t>(std::ranges::find(sound.islands[0].life_records.cause, cause) -
+                                        sound.islands[0].life_records.cause.begin());
     };
     const std::size_t living = of(CauseOfDeath::Alive), gone = of(CauseOfDeath::Poisoned);
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -192,7 +192,7 @@ TEST_F(WorldStateTest, ImpossibleStatesAreRefused) {
         {"parameters", [](WorldState& s) { s.parameters.requested.values.body_size_min = 300; }},
         {"islands", [](WorldState& s) { s.islands.clear(); }},
         {"end of the generation", [](WorldState& s) { s.ended.resize(1); }},
-        {"number of organisms", [](WorldState& s) { s.islands[0].fate.lived_ticks.pop_back(); }},
+        {"number of organisms", [](WorldState& s) { s.islands[0].life_records.lived_ticks.pop_back(); }},
         {"number of organisms", [](WorldState& s) { s.islands[0].organisms.pop_back(); }},
         {"crates", [](WorldState& s) { s.islands[0].crates.pop_back(); }},
         {"of a crate", [](WorldState& s) { s.islands[0].crates[1].x = -1; }},
@@ -202,11 +202,11 @@ TEST_F(WorldStateTest, ImpossibleStatesAreRefused) {
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = nan; }},
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 0; }},
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 1e12f; }},
-        {"lived_ticks", [&](WorldState& s) { s.islands[0].fate.lived_ticks[living] = 3; }},
-        {"death", [&](WorldState& s) { s.islands[0].fate.lived_ticks[gone] = 201; }},
-        {"death", [&](WorldState& s) { s.islands[0].fate.cause[gone] = static_cast<CauseOfDeath>(4); }},
+        {"lived_ticks", [&](WorldState& s) { s.islands[0].life_records.lived_ticks[living] = 3; }},
+        {"death", [&](WorldState& s) { s.islands[0].life_records.lived_ticks[gone] = 201; }},
+        {"death", [&](WorldState& s) { s.islands[0].life_records.cause[gone] = static_cast<CauseOfDeath>(4); }},
         {"death", [&](WorldState& s) { s.islands[0].organisms[gone].health = 1; }},
-        {"dead", [&](WorldState& s) { s.islands[0].fate.cause[gone] = CauseOfDeath::Starved; }},
+        {"dead", [&](WorldState& s) { s.islands[0].life_records.cause[gone] = CauseOfDeath::Starved; }},
         {"food", [](WorldState& s) { s.islands[0].food.pop_back(); }},
         {"food", [](WorldState& s) { s.islands[0].food[3].y = 1 << 30; }},
         {"food", [](WorldState& s) { s.islands[0].food[3].x = s.islands[0].food[3].y = 0; }},

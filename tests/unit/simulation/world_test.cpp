@@ -3,8 +3,8 @@
 #include "server/base/inline_executor.h"
 #include "server/evolution/fitness_shuffle.h"
 #include "server/evolution/migration.h"
-#include "server/simulation/fitness.h"
 #include "server/jobs/thread_pool.h"
+#include "server/simulation/fitness.h"
 #include "tests/unit/simulation/events.h"
 
 #include <gmock/gmock.h>
@@ -115,7 +115,7 @@ TEST_F(WorldTest, EndsAGenerationWhenAllIslandsAreDead) {
     }
     EXPECT_THAT(extinct, testing::UnorderedElementsAre(0, 1, 2));
     for (const Island& island : world.islands()) {
-        for (const std::uint32_t ticks : island.fate().lived_ticks) {
+        for (const std::uint32_t ticks : island.life_records().lived_ticks) {
             longest = std::max<std::uint64_t>(longest, ticks);
         }
     }
@@ -151,7 +151,7 @@ TEST_F(WorldTest, GrowsAndShrinksWithEveryModelAndSelection) {
                 run_generation(world);
                 request(world, {{"population_size", size}});
                 world.advance_tick(executor);
-                ASSERT_EQ(world.islands()[0].fate().cause.size(), size) << model << ", " << selection;
+                ASSERT_EQ(world.islands()[0].life_records().cause.size(), size) << model << ", " << selection;
                 ASSERT_EQ(world.islands()[0].bodies().size(), size) << model << ", " << selection;
             }
         }
@@ -406,16 +406,16 @@ TEST_F(WorldTest, SurvivorsHealthHasAnErrorBelowAFiftieth) {
     parameters.generation_s = 40;
     World world = make();
     run_generation(world);
-    const Fate fate = world.state(executor).islands[0].fate;
+    const LifeRecords life_records = world.state(executor).islands[0].life_records;
     const Island& island = world.islands()[0];
     int survivors = 0;
     bool rounded = false;
     for (std::uint32_t id = 0; id < 500; ++id) {
-        if (fate.lived_ticks[id] != 0) {
+        if (life_records.lived_ticks[id] != 0) {
             continue;
         }
-        const double exact = 40 + double{island.born().genes(evolution::BaseHealth, id)} + 25.0 * fate.food_eaten[id] -
-                             40.0 * fate.poison_eaten[id] - 240;
+        const double exact = 40 + double{island.born().genes(evolution::BaseHealth, id)} +
+                             25.0 * life_records.food_eaten[id] - 40.0 * life_records.poison_eaten[id] - 240;
         EXPECT_NEAR(world.outcomes()[0].fitness[id], exact, 0.02) << "organism " << id;
         rounded |= std::abs(world.outcomes()[0].fitness[id] - exact) > 0.005;
         ++survivors;
@@ -565,7 +565,7 @@ TEST_F(WorldTest, StatisticsEqualSumsOverOrganisms) {
         for (std::size_t i = 0; i < 2; ++i) {
             const GenerationStatistics& s = world.history().back()[i];
             const Island& island = world.islands()[i];
-            const Fate& fate = island.fate();
+            const LifeRecords& life_records = island.life_records();
             EXPECT_EQ(s.generation, static_cast<std::uint64_t>(generation));
             EXPECT_EQ(s.island, i);
             EXPECT_EQ(s.end_tick, world.moment().tick);
@@ -576,15 +576,15 @@ TEST_F(WorldTest, StatisticsEqualSumsOverOrganisms) {
             std::uint32_t alive = 0, starved = 0, poisoned = 0;
             for (std::uint32_t id = 0; id < 25; ++id) {
                 const auto body = island.body_of(id);
-                ASSERT_EQ(body.has_value(), fate.cause[id] == CauseOfDeath::Alive);
+                ASSERT_EQ(body.has_value(), life_records.cause[id] == CauseOfDeath::Alive);
                 fitness[id] = body ? static_cast<double>(world.moment().generation_tick) / 60 +
                                          static_cast<double>(island.living().health[*body])
-                                   : fate.lived_ticks[id] / 60.0;
-                food += fate.food_eaten[id];
-                poison += fate.poison_eaten[id];
-                alive += fate.cause[id] == CauseOfDeath::Alive;
-                starved += fate.cause[id] == CauseOfDeath::Starved;
-                poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
+                                   : life_records.lived_ticks[id] / 60.0;
+                food += life_records.food_eaten[id];
+                poison += life_records.poison_eaten[id];
+                alive += life_records.cause[id] == CauseOfDeath::Alive;
+                starved += life_records.cause[id] == CauseOfDeath::Starved;
+                poisoned += life_records.cause[id] == CauseOfDeath::Poisoned;
             }
             EXPECT_EQ(s.food_eaten, food);
             EXPECT_EQ(s.poison_eaten, poison);

@@ -34,7 +34,7 @@ test("written links are read again", () => {
   }
 });
 
-test("an address without fields is no link", () => {
+test("an address without fields is not a link", () => {
   for (const hash of ["", "#", "#worlds", "#token=evod_00"]) {
     assert.equal(page.read_link(hash), null);
   }
@@ -45,7 +45,7 @@ test("a link never contains a token", () => {
   assert.equal(page.link_of("", moment), "#world=a");
 });
 
-test("values that are no numbers are named", () => {
+test("values that are not numbers are named", () => {
   assert.deepEqual(page.read_link("#world=a&generation=twelve&tick=1.5").wrong,
                    ['generation: got "twelve", allowed whole numbers', 'tick: got "1.5", allowed whole numbers']);
   assert.deepEqual(page.read_link("#world=a&tick=600").wrong, ["tick: got 600 without a generation, allowed only with a generation"]);

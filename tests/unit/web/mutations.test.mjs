@@ -73,7 +73,7 @@ function checksum_of_content(snapshot) {
 
 test("changed bodies have the verdict of the C++ decoder", () => {
   const vectors = read_vectors(), lines = vectors_file("mutations.txt").toString().trimEnd().split("\n");
-  assert.equal(lines.length, 10_000);
+  assert.equal(lines.length, 1000);
   let chain = [], chain_of = 0; // the frames from the last keyframe up to line chain_of
   for (const text of lines) {
     const [line, tile, change, where, value, verdict] = text.split(" ");

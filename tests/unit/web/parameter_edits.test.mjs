@@ -244,7 +244,7 @@ test("a new change ends redo", () => {
 
 // ---- plans and dry runs ----
 
-test("a planned change is no undo step", () => {
+test("a planned change is not an undo step", () => {
   const edits = made();
   edits.edit(0, { real: 0.3 });
   assert.equal(edits.apply("w", { generation: 30 }).at_generation, 30);

@@ -137,15 +137,15 @@ export function other_genes_text(inheritance: Inheritance, first_gene: number, d
 }
 
 /** Neighbouring genes of a long chromosome that are drawn side by side: the weights of one neuron, or a few genes that
- *  are no weights. */
+ *  are not weights. */
 export interface GeneBlock {
   label: string; // the neuron, or the first gene
-  neuron: string; // "": the genes are no weights
+  neuron: string; // "": the genes are not weights
   first: number;
   count: number;
 }
 
-const unnamed_max = 16; // genes in a block that are no weights
+const unnamed_max = 16; // genes in a block that are not weights
 
 /** Divides the genes from `first` on into blocks. */
 export function gene_blocks(names: readonly string[], first: number): GeneBlock[] {

@@ -1,4 +1,4 @@
-// population_csv: chromosomes as text, in the format of `evod export --what population`, which evod, evoctl and evoview
+// population_csv: chromosomes as text, in the format of `evod export --what population`, which evod and evoctl
 // read (proto/codec/population_csv.h). Pure functions.
 //
 //   island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius

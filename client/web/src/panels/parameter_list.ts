@@ -52,7 +52,7 @@ export class ParameterList {
     this.#rows().forEach((row) => row.update(may));
   }
 
-  /** Forgets texts that were typed but are no values. */
+  /** Forgets texts that were typed but are not values. */
   forget(): void {
     this.#rows().forEach((row) => row.forget());
   }

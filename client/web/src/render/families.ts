@@ -1,6 +1,5 @@
 // Families: the lineages of a population, and their colours. A family consists of all organisms with the same founder,
-// an organism of the first generation. As in evoview (client/viewer/world/families.cpp), except that lineages are
-// always counted from the first generation.
+// an organism of the first generation, found along first parents.
 import {Colour, lineages, unknown} from "./look";
 
 export interface Family {

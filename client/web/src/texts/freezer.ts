@@ -65,7 +65,7 @@ export const freezer_texts = {
   create_help: "Creates a world whose first generation is this population.",
   create_copies_help: "Creates a world whose first organisms are copies of this one.",
   download: "Download",
-  download_help: (file: string) => `Saves ${file}, which evod, evoctl and evoview can open.`,
+  download_help: (file: string) => `Saves ${file}, which evod and evoctl can open.`,
   rename: "Rename …",
   new_name: "New name",
   do_rename: "Rename",

@@ -18,8 +18,8 @@ export const view_texts = {
   palette: "palette",
   palettes: {violet: "violet", viridis: "viridis", cividis: "cividis"} as
     {readonly[palette in Look["palette"]]: string},
-  lineages: "Lineages are counted from the first generation. evoview counts them from a later one after one lineage " +
-    "has taken over.",
+  lineages: "Lineages are counted from the first generation. After one of them has taken over, all organisms have " +
+    "its colour.",
   perception: "perception radii (V)",
   forces: "forces (G)",
   of_which: {none: "none", selected: "at the mouse or selected", all: "all"} as

@@ -16,7 +16,7 @@ export interface PageMoment {
 export interface ReadLink {
   moment: PageMoment;
   got: {[field: string]: string}; // the numbers as the link spells them
-  wrong: string[]; // sentences about fields that are no numbers
+  wrong: string[]; // sentences about fields that are not numbers
 }
 
 const numbers = ["generation", "tick", "island", "organism", "rate"] as const;

@@ -29,10 +29,6 @@ class TemporaryFolder {
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "evoview-XXXXXX").string();
         path_ = mkdtemp(name.data());
-        setenv("XDG_STATE_HOME", file("state").c_str(), 1); // evoview stores its settings there
-        // The tour would cover the island in windows without a script.
-        std::filesystem::create_directories(file("state/evod"));
-        std::ofstream{file("state/evod/evoview.ini")} << "[Sidebar][Data]\ntour_seen=1\n";
     }
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
     std::string file(const std::string& name) const { return (path_ / name).string(); }

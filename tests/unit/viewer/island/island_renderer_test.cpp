@@ -40,13 +40,6 @@ TEST_F(IslandRendererTest, ThreePixelsBesideIsAHitAtAnyZoom) {
     EXPECT_EQ(at(600, 620.31), std::nullopt);
 }
 
-TEST_F(IslandRendererTest, FindsTheItemUnderTheMouse) {
-    const auto item = [&](double x, double y) { return item_at(camera.to_screen({x, y}), organisms, 14, camera); };
-    EXPECT_EQ(item(107, 100), 1u) << "the nearest centre, whatever the radius in the columns";
-    EXPECT_EQ(item(600, 616.9), 2u);
-    EXPECT_EQ(item(600, 617.1), std::nullopt);
-}
-
 TEST_F(IslandRendererTest, ASmallOrganismHasATargetOf24Pixels) {
     organisms.width = codec::px_column({2, 2, 20});
     EXPECT_EQ(at(100, 111.9), 0u);

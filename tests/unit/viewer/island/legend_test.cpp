@@ -39,7 +39,7 @@ TEST(Legend, ShowsTheScaleOfDrawnDensities) {
 
 TEST(Legend, ExplainsNothingThatNeedsAMissingPopulation) {
     IslandView view;
-    view.options.colour_by = ColourBy::Lineage;
+    view.options.colour_by = ColourBy::Gene;
     view.options.radii = view.options.forces = Which::All;
     EXPECT_TRUE(legend_of(view, snapshot_with_health(80), std::nullopt, 1).empty());
 }

@@ -83,26 +83,6 @@ TEST_F(MarksTest, AGeneScalesFromItsMinimumToItsMaximum) {
     EXPECT_EQ(all_equal(5), palette::at(ramp, 0.5));
 }
 
-TEST_F(MarksTest, FamiliesKeepTheirColoursWhileAmongTheLargest) {
-    const auto families_of = [](std::vector<std::uint32_t> founders) { return Families{founders}; };
-    FamilyColours colours;
-    colours.update(families_of({5, 5, 5, 6, 6, 7}));
-    EXPECT_EQ(colours.of(0), palette::lineages[0]);
-    EXPECT_EQ(colours.of(2), palette::lineages[2]);
-    EXPECT_EQ(colours.of(Families::none), palette::unknown);
-    colours.update(families_of({7, 7, 7, 5, 8, 8})); // 7, 8, 5: family 6 is gone, 8 is new
-    EXPECT_EQ(colours.of(0), palette::lineages[2]) << "7";
-    EXPECT_EQ(colours.of(1), palette::lineages[1]) << "8 gets the free colour";
-    EXPECT_EQ(colours.of(2), palette::lineages[0]) << "5";
-    const auto next = families_of({8, 8, 5, 7});
-    colours.update(next);
-    std::vector<Colour> of_organisms;
-    add_family_colours(organisms, next, colours, of_organisms);
-    EXPECT_THAT(of_organisms, ElementsAre(palette::lineages[1], palette::lineages[0], palette::unknown));
-    EXPECT_EQ(colours.of_founder(7), palette::lineages[2]);
-    EXPECT_EQ(colours.of_founder(6), palette::unknown);
-}
-
 TEST_F(MarksTest, DiscsHaveTheRadiiOfTheOrganisms) {
     EXPECT_THAT(discs, ElementsAre(Shape{100, 10, 10, 10}, Shape{200, 20, 11, 11}, Shape{300, 30, 12, 12}));
 }

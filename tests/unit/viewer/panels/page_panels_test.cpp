@@ -6,8 +6,9 @@ namespace evod::viewer {
 namespace {
 
 TEST(PagePanels, HaveTheKeysThatPanelsHadInEvoview) {
+    EXPECT_EQ(page_panel_at(7), "Plots");
     EXPECT_EQ(page_panel_at(8), "Glass box");
-    EXPECT_EQ(page_panel_at(7), "");
+    EXPECT_EQ(page_panel_at(4), "");
 }
 
 TEST(PagePanels, AreFoundByTheirWidgets) {
@@ -15,6 +16,11 @@ TEST(PagePanels, AreFoundByTheirWidgets) {
          {"Glass box/Play", "Tabs/Glass box", "Glass box", "hold the world", "bet on 43", "Why 45?"}) {
         EXPECT_EQ(page_panel_with(widget), "Glass box") << widget;
     }
+    EXPECT_EQ(page_panel_with("Tabs/Plots"), "Plots");
+    EXPECT_EQ(page_panel_with("compare: world second"), "Plots");
+    EXPECT_EQ(page_panel_with("tree of generation 4"), "Family tree");
+    EXPECT_EQ(page_panel_with("Go to parent 12"), "Organism");
+    EXPECT_EQ(page_panel_with("Organism/keep it centred (L)"), "") << "evoview has it, too";
     for (const char* widget : {"Play", "left/generation", "Glass boxes", "Step ticks", "Parameters/Apply", ""}) {
         EXPECT_EQ(page_panel_with(widget), "") << widget;
     }

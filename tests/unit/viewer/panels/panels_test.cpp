@@ -29,29 +29,6 @@ TEST(Panels, ACollapsedSidebarOpensForAPanel) {
     EXPECT_EQ(panels.width(1280, 1), sidebar_width);
 }
 
-TEST(Panels, ClosesTheDetachedPanelUsedLastFirst) {
-    Panels panels;
-    for (const std::size_t index : {4u, 1u}) {
-        panels.set_detached(index, true);
-    }
-    panels.show(4);
-    EXPECT_TRUE(panels.close_front());
-    EXPECT_TRUE(panels.shown(4)) << "in the sidebar";
-    EXPECT_TRUE(panels.shown(1)) << "still detached";
-    EXPECT_TRUE(panels.close_front());
-    EXPECT_FALSE(panels.close_front());
-    EXPECT_TRUE(panels.shown(1));
-    EXPECT_FALSE(panels.shown(4));
-}
-
-TEST(Panels, TheSidebarLeavesRoomForTheWorlds) {
-    Panels panels;
-    panels.set({.width = 3000});
-    EXPECT_EQ(panels.width(1000, 1), 550);
-    panels.set({.width = 10});
-    EXPECT_EQ(panels.width(1280, 2), 2 * sidebar_width_min);
-}
-
 TEST(Panels, EachPanelKeyShowsAPanelOrLeadsToThePage) {
     const Panels panels;
     for (unsigned key = 2; key <= 11; ++key) {
@@ -59,24 +36,7 @@ TEST(Panels, EachPanelKeyShowsAPanelOrLeadsToThePage) {
     }
     EXPECT_EQ(panels.panel_at(4), 2u);
     EXPECT_EQ(panels.key_of(2), "F4");
-    EXPECT_EQ(panels.key_of(*panels.panel_at(9)), "F9") << "panels after one that is in the page keep their keys";
     EXPECT_EQ(panels.panel_at(12), std::nullopt);
-}
-
-TEST(Panels, AnUnknownStoredTabIsTheFirst) {
-    Panels panels;
-    panels.set({.tab = "no such panel"});
-    EXPECT_TRUE(panels.shown(0));
-}
-
-TEST(Panels, TabAndDetachedPanelsSurviveANewSession) {
-    Panels panels;
-    panels.set_detached(1, true);
-    panels.show(3);
-    panels.begin_session();
-    EXPECT_TRUE(panels.shown(1));
-    EXPECT_TRUE(panels.shown(3));
-    EXPECT_TRUE(panels.close_front());
 }
 
 } // namespace

@@ -20,9 +20,8 @@ Options parsed(std::vector<const char*> arguments) {
 
 TEST(ViewerOptions, OpenAWindowByDefault) {
     const Options options = parsed({"--server", "lab.example:7744"});
-    EXPECT_TRUE(options.server_given);
     EXPECT_EQ(options.connection.server, (core::Endpoint{"lab.example", 7744}));
-    EXPECT_FALSE(options.screenshot || options.record || options.script || options.start || options.size);
+    EXPECT_FALSE(options.screenshot || options.record || options.script || options.size);
 }
 
 TEST(ViewerOptions, ContainTheWantedWorld) {
@@ -33,11 +32,6 @@ TEST(ViewerOptions, ContainTheWantedWorld) {
     EXPECT_TRUE(wanted.all_islands);
     EXPECT_EQ(wanted.replay_generation, 12u);
     EXPECT_EQ(wanted.rate_hz, 60);
-}
-
-TEST(ViewerOptions, ContainTheFreezer) {
-    EXPECT_EQ(parsed({}).freezer, "") << "the default folder";
-    EXPECT_EQ(parsed({"--freezer", "class/8b"}).freezer, "class/8b");
 }
 
 TEST(ViewerOptions, SizeIsInPixelsOrFollowsTheScale) {
@@ -61,16 +55,10 @@ TEST(ViewerOptions, ScreenshotsAndRecordingsShareTheTimeout) {
     EXPECT_EQ(recording.record->timeout_s, 5);
 }
 
-TEST(ViewerOptions, TheLookReplacesTheStoredOne) {
+TEST(ViewerOptions, ContainTheLook) {
     EXPECT_EQ(view_of(parsed({})), ViewOptions{}) << "vivid and dark";
-    ViewOptions stored = default_options({Skin::Classic});
-    stored.trails = true;
-    EXPECT_EQ(view_of(parsed({}), stored), stored);
-    EXPECT_EQ(view_of(parsed({"--skin", "classic"}), stored), stored);
-    EXPECT_EQ(view_of(parsed({"--background", "light"}), stored), stored) << "classic has one background";
-    EXPECT_EQ(view_of(parsed({"--skin", "vivid"}), stored), ViewOptions{}) << "with the defaults of the skin";
-    EXPECT_EQ(view_of(parsed({"--skin", "vivid", "--background", "light"}), stored).look,
-              (Look{Skin::Vivid, Background::Light}));
+    EXPECT_EQ(view_of(parsed({"--skin", "classic"})), default_options({Skin::Classic}));
+    EXPECT_EQ(view_of(parsed({"--background", "light"})).look, (Look{Skin::Vivid, Background::Light}));
 }
 
 TEST(ViewerOptions, RefuseInvalidValuesAndCombinations) {
@@ -89,16 +77,6 @@ TEST(ViewerOptions, RefuseInvalidValuesAndCombinations) {
         ASSERT_TRUE(std::holds_alternative<int>(options)) << arguments.front();
         EXPECT_EQ(std::get<int>(options), 2) << arguments.front();
     }
-}
-
-TEST(Tour, IsShownOnceAndNotInScripts) {
-    Options options;
-    EXPECT_TRUE(wants_tour(options, false));
-    EXPECT_FALSE(wants_tour(options, true));
-    options.script = Script{};
-    EXPECT_FALSE(wants_tour(options, false));
-    options.tour = true;
-    EXPECT_TRUE(wants_tour(options, true));
 }
 
 } // namespace

@@ -58,8 +58,7 @@ struct Actor : Script::Host {
     std::optional<Point> locate(const Script::IslandPlace& place) const override {
         return place.organism == 12u ? std::optional{Point{7, 8}} : std::nullopt;
     }
-    bool selects() const override { return !places; }
-    std::optional<std::uint32_t> selected(std::optional<std::size_t>) const override { return organism; }
+    std::optional<std::uint32_t> selected() const override { return organism; }
     const ViewedWorld* world() const override { return nullptr; }
     std::string save(const std::string& path) override {
         done.push_back("save " + path);
@@ -78,7 +77,6 @@ struct Actor : Script::Host {
     std::optional<std::string> field; // the text of the field with the keyboard focus
     std::string problem;
     std::optional<std::uint32_t> organism;
-    bool places = false; // a tool for placing is chosen
     bool writable = true;
     std::vector<std::string> done;
 };
@@ -119,10 +117,9 @@ TEST_F(ScriptTest, ErrorsNameLineWordAndAllowedWords) {
     EXPECT_THAT(fault("timeout 0"), HasSubstr("word 2: got \"0\", allowed more than 0"));
     EXPECT_THAT(fault("quit now"), HasSubstr("word 2"));
     EXPECT_EQ(fault("actions -1"), "1: word 2: got \"-1\", allowed a whole number");
-    EXPECT_EQ(fault("drag fast at"), "1: word 4 is missing: drag NAME at X,Y");
-    EXPECT_THAT(fault("drag fast to 0,0"), testing::StartsWith("1: word 3: got \"to\", allowed at, organism"));
-    EXPECT_THAT(fault("drag fast at 2,0"), testing::StartsWith("1: word 4: got \"2,0\", allowed two numbers"));
-    EXPECT_EQ(fault("click left/organism x"), "1: word 3: got \"x\", allowed a whole number");
+    EXPECT_THAT(fault("drag fast at 0,0"), HasSubstr("The panel Freezer is in the browser page"));
+    EXPECT_THAT(fault("click right/at 0.5,0.5"), HasSubstr("two worlds side by side are in the browser page"));
+    EXPECT_EQ(fault("click organism x"), "1: word 3: got \"x\", allowed a whole number");
     for (const char* place : {"0.5", "0.5,", "1.1,0", "0,-0.1", "nan,0"}) {
         EXPECT_THAT(fault(std::string{"click at "} + place), HasSubstr("allowed two numbers from 0 to 1")) << place;
     }
@@ -165,18 +162,6 @@ TEST_F(ScriptTest, AClickWaitsForItsWidgetAndMovesThereFirst) {
     EXPECT_THAT(actor.done, ElementsAre("to 30 40"));
     EXPECT_EQ(advance(script, 1), "");
     EXPECT_THAT(actor.done, ElementsAre("to 30 40", "to 30 40", "down", "up"));
-}
-
-TEST_F(ScriptTest, ADragReleasesTheButtonOverTheIsland) {
-    actor.add("fast", {30, 40});
-    actor.places = true;
-    auto script = Script::parse("drag fast organism 12\nactions 1").value();
-    EXPECT_EQ(advance(script, 5), "");
-    EXPECT_TRUE(script.done());
-    EXPECT_THAT(actor.done, ElementsAre("to 30 40", "to 30 40", "down", "to 7 8", "up"));
-    actor.places = false;
-    script = Script::parse("drag fast organism 12").value();
-    EXPECT_THAT(advance(script, 4), HasSubstr("\"fast\" cannot be dragged to an island"));
 }
 
 TEST_F(ScriptTest, ATimeoutNamesTheLineAndTheReason) {
@@ -303,7 +288,7 @@ TEST_F(ScriptTest, AClickOnAnOrganismMustSelectIt) {
     actor.organism = 9;
     EXPECT_THAT(expire(actor, "click organism 12"), HasSubstr("the click has selected organism 9"));
     EXPECT_THAT(expire(actor, "click organism 3"), HasSubstr("organism 3 is not on the screen"));
-    EXPECT_THAT(expire(actor, "click right/at 0.4,0.6"), HasSubstr("this place is not on the screen"));
+    EXPECT_THAT(expire(actor, "click at 0.4,0.6"), HasSubstr("this place is not on the screen"));
 }
 
 TEST_F(ScriptTest, AFailedScreenshotEndsTheScript) {

@@ -137,7 +137,6 @@ TEST_F(ParameterEditsTest, ARefusalMarksTheFieldAndKeepsTheEdits) {
     EXPECT_EQ(edits.violation(food_count), nullptr);
     EXPECT_NE(edits.problem(), "");
     EXPECT_EQ(edits.edit_count(), 2u);
-    EXPECT_FALSE(edits.can_undo());
     edits.edit(mutation_chance, real(0.5));
     EXPECT_EQ(edits.violation(mutation_chance), nullptr) << "it was about the former value";
     ASSERT_TRUE(edits.apply("w"));
@@ -165,7 +164,7 @@ TEST_F(ParameterEditsTest, TheNextEditOrAnswerClearsARefusal) {
     edits.edit(mutation_chance, real(0.5));
     expect_no_refusal();
     refuse();
-    edits.revert(mutation_chance);
+    edits.edit(mutation_chance, edits.requested_value(mutation_chance));
     expect_no_refusal();
     refuse();
     ASSERT_TRUE(edits.apply("w")); // another client has made it valid
@@ -234,61 +233,6 @@ TEST_F(ParameterEditsTest, AnOwnChangeHasNoOtherAuthor) {
     EXPECT_EQ(edits.client_of_last_change(mutation_chance), "");
 }
 
-TEST_F(ParameterEditsTest, UndoAndRedoSendTheOldAndNewValues) {
-    change_chance(0.2);
-    change_chance(0.3);
-    const auto undo = edits.undo("w");
-    ASSERT_TRUE(undo);
-    EXPECT_EQ(undo->set_parameters().parameters(0).value().real(), 0.2);
-    EXPECT_EQ(undo->set_parameters().expected_revision(), 9u);
-    EXPECT_FALSE(edits.undo("w")) << "one at a time";
-    const auto undone = accepted(set_of(10, 0.2));
-    EXPECT_FALSE(edits.answered(&undone));
-    EXPECT_TRUE(edits.can_undo());
-    const auto redo = edits.redo("w");
-    ASSERT_TRUE(redo);
-    EXPECT_EQ(redo->set_parameters().parameters(0).value().real(), 0.3);
-    const auto redone = accepted(set_of(11, 0.3));
-    edits.answered(&redone);
-    EXPECT_FALSE(edits.can_redo());
-    EXPECT_EQ(edits.undo("w")->set_parameters().parameters(0).value().real(), 0.2);
-}
-
-TEST_F(ParameterEditsTest, ARefusedUndoCanBeRepeated) {
-    change_chance(0.2);
-    ASSERT_TRUE(edits.undo("w"));
-    evod::v1::Response refused;
-    refused.mutable_status()->set_code(evod::v1::CODE_UNAVAILABLE);
-    refused.mutable_status()->set_message("the disk is full");
-    edits.answered(&refused);
-    EXPECT_EQ(edits.problem(), "The disk is full");
-    ASSERT_TRUE(edits.can_undo());
-    EXPECT_FALSE(edits.can_redo());
-    EXPECT_EQ(edits.undo("w")->set_parameters().parameters(0).value().real(), 0.15);
-}
-
-TEST_F(ParameterEditsTest, UndoKeepsLaterChangesOfOthers) {
-    edits.edit(mutation_chance, real(0.2));
-    edits.edit(food_count, count(30));
-    ASSERT_TRUE(edits.apply("w"));
-    const auto response = accepted(set_of(8, 0.2, 30));
-    edits.answered(&response);
-    edits.update(set_of(9, 0.7, 30));
-    const auto undo = edits.undo("w");
-    ASSERT_EQ(undo->set_parameters().parameters_size(), 1);
-    EXPECT_EQ(undo->set_parameters().parameters(0).name(), "food_count");
-}
-
-TEST_F(ParameterEditsTest, ANewChangeClearsRedo) {
-    change_chance(0.2);
-    ASSERT_TRUE(edits.undo("w"));
-    const auto undone = accepted(set_of(9, 0.15));
-    edits.answered(&undone);
-    EXPECT_TRUE(edits.can_redo());
-    change_chance(0.4);
-    EXPECT_FALSE(edits.can_redo());
-}
-
 TEST_F(ParameterEditsTest, APendingValueIsTheRequestedOne) {
     auto set = set_of(8);
     *set.mutable_parameters(food_count)->mutable_pending() = count(60);
@@ -302,13 +246,12 @@ TEST_F(ParameterEditsTest, APendingValueIsTheRequestedOne) {
     EXPECT_EQ(edits.edit_count(), 1u);
 }
 
-TEST_F(ParameterEditsTest, AnotherRunClearsEditsAndUndo) {
+TEST_F(ParameterEditsTest, AnotherRunClearsEdits) {
     change_chance(0.2);
     edits.edit(food_count, count(30));
     edits.forget();
     EXPECT_FALSE(edits.known());
     EXPECT_EQ(edits.edit_count(), 0u);
-    EXPECT_FALSE(edits.can_undo());
     edits.update(set_of(1)); // revisions start again
     EXPECT_EQ(edits.revision(), 1u);
 }

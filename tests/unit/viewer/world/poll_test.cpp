@@ -109,7 +109,7 @@ TEST_F(PollTest, DropsAnswersAboutAnotherWorld) {
     WantedWorld wanted{.connection = {}, .world = "default", .all_islands = true};
     wanted.connection = server.options();
     const ViewedWorld beside{wanted};
-    EXPECT_TRUE(poll->due(beside, now)) << "the panel now shows the other pane";
+    EXPECT_TRUE(poll->due(beside, now)) << "the panel now shows the other world";
     session->answer(question, 1);
     take_all();
     EXPECT_THAT(received, ElementsAre());

@@ -19,7 +19,7 @@ inline void put(std::string& bytes, float number) {
     put(bytes, std::bit_cast<std::uint32_t>(number));
 }
 
-/// Organisms with genes 100 · gene + id, parents id + 1 and id + 2, founder id % 3, all seeking a target at (id, 2 id)
+/// Organisms with genes 100 · gene + id, all seeking a target at (id, 2 id)
 /// with a force of (1, id).
 inline evod::v1::Population page_of(std::uint32_t first, std::uint32_t count, std::uint32_t organism_count,
                                     std::uint64_t generation = 4, std::uint32_t gene_count = 2) {
@@ -37,11 +37,6 @@ inline evod::v1::Population page_of(std::uint32_t first, std::uint32_t count, st
     for (std::uint32_t gene = 0; gene < gene_count; ++gene) {
         column(*page.mutable_genes(), [&](std::uint32_t id) { return static_cast<float>(100 * gene + id); });
     }
-    if (generation > 1) {
-        column(*page.mutable_parents(), [](std::uint32_t id) { return id + 1; });
-        column(*page.mutable_parents(), [](std::uint32_t id) { return id + 2; });
-    }
-    column(*page.mutable_founders(), [](std::uint32_t id) { return id % 3; });
     page.mutable_choices()->assign(count, static_cast<char>(evod::v1::CHOICE_SEEK));
     column(*page.mutable_forces(), [](std::uint32_t) { return 1.f; });
     column(*page.mutable_forces(), [](std::uint32_t id) { return static_cast<float>(id); });

@@ -1,6 +1,5 @@
 #include "client/viewer/world/population.h"
 
-#include "tests/unit/codec/px_column.h"
 #include "tests/unit/viewer/world/population_pages.h"
 
 #include <gmock/gmock.h>
@@ -13,8 +12,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Optional;
 
 TEST(Population, IsAssembledFromPages) {
     Population population{2};
@@ -27,8 +24,6 @@ TEST(Population, IsAssembledFromPages) {
     EXPECT_EQ(population.generation(), 4u);
     EXPECT_THAT(population.gene(0), ElementsAre(0, 1, 2, 3, 4));
     EXPECT_THAT(population.gene(1), ElementsAre(100, 101, 102, 103, 104));
-    EXPECT_EQ(population.first_parent(4), 5u);
-    EXPECT_EQ(population.second_parent(4), 6u);
     EXPECT_EQ(population.choice(4), evod::v1::CHOICE_SEEK);
     EXPECT_THAT(population.force_x(), ElementsAre(1, 1, 1, 1, 1));
     EXPECT_THAT(population.force_y(), ElementsAre(0, 1, 2, 3, 4));
@@ -37,28 +32,6 @@ TEST(Population, IsAssembledFromPages) {
     EXPECT_EQ(population.range(1).min, 100);
     EXPECT_EQ(population.range(1).mean, 102);
     EXPECT_EQ(population.range(1).max, 104);
-    EXPECT_THAT(population.children_of(3), ElementsAre(1, 2));
-}
-
-TEST(Population, TheFirstGenerationHasNoParents) {
-    Population population{2};
-    ASSERT_EQ(population.add(page_of(0, 2, 4, 1)), std::nullopt);
-    ASSERT_EQ(population.add(page_of(2, 2, 4, 1)), std::nullopt);
-    EXPECT_FALSE(population.has_parents());
-    EXPECT_TRUE(population.children_of(1).empty());
-}
-
-TEST(Population, PlacedOrganismsBelongToNoFamily) {
-    Population population{2};
-    auto page = page_of(0, 4, 4);
-    page.clear_founders();
-    for (const std::uint32_t founder : {1u, 1u, ~0u, ~0u}) {
-        put(*page.mutable_founders(), founder);
-    }
-    ASSERT_EQ(population.add(page), std::nullopt);
-    EXPECT_EQ(population.families().count(), 1u);
-    EXPECT_EQ(population.families().of(1), 0);
-    EXPECT_EQ(population.families().of(3), Families::none);
 }
 
 TEST(Population, AnOrganismPlacedBetweenPagesOutdatesThem) {
@@ -70,57 +43,10 @@ TEST(Population, AnOrganismPlacedBetweenPagesOutdatesThem) {
     EXPECT_TRUE(population.is_outdated_by(page_of(3, 2, 5, 5)));
 }
 
-/// A snapshot of generation 4 in which the organisms with these ids live.
-codec::ReceivedSnapshot snapshot_of(codec::Column ids) {
-    codec::ReceivedSnapshot snapshot;
-    snapshot.about.set_generation(4);
-    snapshot.about.mutable_live()->set_alive_count(static_cast<std::uint32_t>(ids.size()));
-    snapshot.entities = codec::snapshot_with({.id = std::move(ids), .x = {}, .y = {}, .width = {}, .height = {}});
-    return snapshot;
-}
-
-TEST(Living, AreTheOrganismsWithAChoice) {
-    Population population{2};
-    auto page = page_of(0, 4, 4);
-    (*page.mutable_choices())[2] = evod::v1::CHOICE_UNSPECIFIED;
-    ASSERT_EQ(population.add(page), std::nullopt);
-    EXPECT_THAT(living(population, nullptr), Optional(ElementsAre(0, 1, 3)));
-}
-
-TEST(Living, AreThoseInTheSnapshotAfterTheGeneration) {
-    Population population{2};
-    auto page = page_of(0, 4, 4);
-    page.mutable_choices()->assign(4, static_cast<char>(evod::v1::CHOICE_UNSPECIFIED));
-    ASSERT_EQ(population.add(page), std::nullopt);
-    codec::ReceivedSnapshot snapshot = snapshot_of({1, 3});
-    EXPECT_THAT(living(population, &snapshot), Optional(ElementsAre(1, 3)));
-    const codec::ReceivedSnapshot empty = snapshot_of({});
-    EXPECT_THAT(living(population, &empty), Optional(IsEmpty()));
-    snapshot.about.mutable_live()->set_alive_count(3);
-    EXPECT_EQ(living(population, &snapshot), std::nullopt) << "it contains only part of the island";
-    snapshot = snapshot_of({1, 3});
-    snapshot.about.set_generation(5);
-    EXPECT_EQ(living(population, &snapshot), std::nullopt);
-    EXPECT_EQ(living(population, nullptr), std::nullopt);
-}
-
 TEST(Population, IsCompleteWithoutOrganisms) {
     Population population{2};
     ASSERT_EQ(population.add(page_of(0, 0, 0)), std::nullopt);
     EXPECT_TRUE(population.complete());
-}
-
-TEST(Population, FamiliesAreThoseOfTheFounders) {
-    Population population{2};
-    auto page = page_of(0, 20, 20);
-    ASSERT_EQ(population.add(page), std::nullopt);
-    EXPECT_EQ(population.families().count(), 3u);
-    EXPECT_EQ(population.families().of(4), 1) << "founder 1";
-    page.clear_founders();
-    Population unknown{2};
-    ASSERT_EQ(unknown.add(page), std::nullopt);
-    EXPECT_TRUE(unknown.families().shown().empty());
-    EXPECT_EQ(unknown.families().of(3), Families::none);
 }
 
 TEST(Population, RejectsInvalidPages) {
@@ -132,10 +58,6 @@ TEST(Population, RejectsInvalidPages) {
     const Fault faults[] = {
         {"population.genes has", [&](auto& page) { a_byte_less(*page.mutable_genes()); }},
         {"population.genes has", [&](auto& page) { page.mutable_genes()->append(8, '\0'); }},
-        {"population.parents has", [&](auto& page) { a_byte_less(*page.mutable_parents()); }},
-        {"population.parents has", [&](auto& page) { page.clear_parents(); }},
-        {"population.founders has", [&](auto& page) { a_byte_less(*page.mutable_founders()); }},
-        {"population.founders has", [&](auto& page) { page.clear_founders(); }},
         {"population.choices has", [&](auto& page) { a_byte_less(*page.mutable_choices()); }},
         {"population.choices contains", [&](auto& page) { (*page.mutable_choices())[0] = 9; }},
         {"population.forces has", [&](auto& page) { a_byte_less(*page.mutable_forces()); }},

@@ -148,27 +148,8 @@ TEST_F(ReplayControlTest, ForksFromTheShownMoment) {
     EXPECT_EQ(fork.fork_world().name(), "default-3") << "the live world's name with a number that is free";
     EXPECT_FALSE(fork.fork_world().has_at_generation());
     answer_with(session, fork, info("default-3", evod::v1::RUN_STATE_WAITING));
-    until(world, [&] { return world.replay.forked() == "default-3"; });
-    EXPECT_EQ(world.take_beside(), "default-3");
-    EXPECT_EQ(world.take_beside(), "") << "it is shown once";
-    world.replay.return_to_present();
-    EXPECT_EQ(world.replay.forked(), "default-3") << "the fork is still there";
-    world.show("elsewhere", 0);
-    EXPECT_EQ(world.replay.forked(), "");
-}
-
-TEST_F(ReplayControlTest, ForgetsADeletedFork) {
-    ViewedWorld world{wanted()};
-    auto session = open_replay(world);
-    fork(world, session);
-    until(world, [&] { return session.unread_bytes() > 0; });
-    answer_with(session, next(session), info("default-3", evod::v1::RUN_STATE_WAITING));
-    until(world, [&] { return world.replay.forked() == "default-3"; });
-    evod::v1::ServerMessage deleted;
-    deleted.mutable_event()->set_world("default-3");
-    deleted.mutable_event()->mutable_world_deleted()->mutable_by()->set_user("alice");
-    session.send(deleted);
-    until(world, [&] { return world.replay.forked().empty(); });
+    until(world, [&] { return world.feed.world() == "default-3"; });
+    EXPECT_FALSE(world.replay.is_own());
 }
 
 TEST_F(ReplayControlTest, AViewerMayCommandItsOwnReplay) {
@@ -181,66 +162,6 @@ TEST_F(ReplayControlTest, AViewerMayCommandItsOwnReplay) {
     EXPECT_EQ(next(session).seek().to().tick(), 200u);
     world.replay.return_to_present();
     EXPECT_FALSE(world.commands.may_command());
-}
-
-/// A snapshot of island 1 of the replay, with generation.
-void send_generation(core::FakeSession& session, std::uint32_t subscription_id, std::uint64_t generation,
-                     std::uint64_t tick) {
-    evod::v1::SnapshotFrame frame;
-    frame.set_width_px(100);
-    frame.set_height_px(100);
-    codec::encode_plain({}, frame);
-    frame.set_world("default@3");
-    frame.set_run_id("\xaa");
-    frame.set_subscription_id(subscription_id);
-    frame.set_island(1);
-    frame.set_island_count(3);
-    frame.set_generation(generation);
-    frame.set_tick(tick);
-    session.send(frame);
-}
-
-TEST_F(ReplayControlTest, ABirthIsSelectedInItsGeneration) {
-    ViewedWorld world{wanted()};
-    auto session = open_replay(world);
-    world.replay.show_birth(4, 17);
-    const auto seek = next(session);
-    EXPECT_EQ(seek.seek().to().generation(), 4u);
-    EXPECT_FALSE(seek.seek().to().has_tick()) << "the first tick";
-    answer_with(session, seek, replay_info(300));
-    send_generation(session, 9, 2, 150);
-    until(world, [&] { return world.feed.snapshot()->about.tick() == 150; });
-    EXPECT_EQ(world.feed.selected(), std::nullopt) << "17 is another organism in generation 2";
-    send_generation(session, 9, 4, 300);
-    until(world, [&] { return world.feed.selected() == 17u; });
-}
-
-TEST_F(ReplayControlTest, ALaterSeekCancelsABirth) {
-    ViewedWorld world{wanted()};
-    auto session = open_replay(world);
-    world.replay.show_birth(4, 17);
-    world.replay.seek({});
-    answer_with(session, next(session), replay_info(300));
-    send_generation(session, 9, 4, 300);
-    until(world, [&] { return world.feed.snapshot()->about.tick() == 300; });
-    world.update(std::chrono::steady_clock::now());
-    EXPECT_EQ(world.feed.selected(), std::nullopt);
-}
-
-TEST_F(ReplayControlTest, ABirthOpensAReplayOfALiveWorld) {
-    ViewedWorld world{wanted()};
-    auto session = begin(world);
-    show_first_snapshot(world, session, 850);
-    world.replay.show_birth(4, 17);
-    const auto open = session.read_request();
-    EXPECT_EQ(open.open_replay().at().generation(), 4u);
-    answer_with(session, open, replay_info(300));
-    until(world, [&] { return world.replay.is_own(); });
-    EXPECT_EQ(next(session).unsubscribe().subscription_id(), 7u);
-    session.answer_subscription(next(session), 9);
-    session.answer_subscription(next(session), 10);
-    send_generation(session, 9, 4, 300);
-    until(world, [&] { return world.feed.selected() == 17u; });
 }
 
 } // namespace

@@ -50,6 +50,7 @@ TEST(StatusText, FormatsSpeedsAsMultiplesOfRealTime) {
     EXPECT_EQ(speed_text(speed), "0.3×");
     speed.set_max(true);
     EXPECT_EQ(speed_text(speed), "max");
+    EXPECT_EQ(speed_text(10000), "10,000×");
 }
 
 TEST(StatusText, FormatsARefusalAsASentence) {
@@ -89,11 +90,11 @@ TEST(StatusText, NamesTheIslandOnlyIfThereAreSeveral) {
     snapshot.set_ticks_per_s(119.7);
     RunControl control;
     control.update(snapshot);
-    EXPECT_EQ(place_and_speed_text(snapshot, control), "default · 2× (120 ticks/s)");
+    EXPECT_EQ(place_and_speed_text("default", snapshot, control), "default · 2× (120 ticks/s)");
     snapshot.set_island_count(8);
     snapshot.set_island(2);
-    EXPECT_EQ(place_and_speed_text(snapshot, control), "default · island 2 of 0–7 · 2× (120 ticks/s)");
-    EXPECT_EQ(place_text(snapshot), "default · island 2 of 0–7");
+    EXPECT_EQ(place_and_speed_text("default", snapshot, control), "default · island 2 of 0–7 · 2× (120 ticks/s)");
+    EXPECT_EQ(place_text("default", snapshot), "default · island 2 of 0–7");
 }
 
 TEST(StatusText, ListsTheStatisticsOfBothGenerations) {
@@ -120,6 +121,12 @@ TEST(StatusText, LabelsReplaysOfLiveWorldsAndOfRunFiles) {
     EXPECT_EQ(replay_label(replay), "REPLAY");
     replay.set_replay_of("default");
     EXPECT_EQ(replay_label(replay), "REPLAY of default");
+    evod::v1::SnapshotFrame snapshot;
+    snapshot.set_generation(1200);
+    EXPECT_EQ(shown_text("default", nullptr, &snapshot), "World default");
+    EXPECT_EQ(shown_text("default@3", &replay, &snapshot), "Replay of default, generation 1,200");
+    replay.clear_replay_of();
+    EXPECT_EQ(shown_text("file", &replay, nullptr), "Replay of a file");
 }
 
 } // namespace

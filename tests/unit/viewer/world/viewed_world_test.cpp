@@ -120,38 +120,5 @@ TEST_F(ViewedWorldTest, LinksToTheShownMoment) {
     EXPECT_EQ(world.link(), moment + "&island=" + std::to_string(shown.island()) + "&organism=4");
 }
 
-TEST_F(ViewedWorldTest, ReportsWhyAWorldIsNotCreated) {
-    ViewedWorld world{wanted()};
-    auto session = begin(world);
-    show_first_snapshot(world, session, 50);
-    std::string refusal;
-    evod::v1::Request create;
-    create.mutable_create_world()->set_name("default");
-    world.create(std::move(create), false, [&](const std::string& why) { refusal = why; });
-    session.refuse(session.read_request().request_id(), evod::v1::CODE_ALREADY_EXISTS, "a world has this name");
-    until(world, [&] { return !refusal.empty(); });
-    EXPECT_EQ(refusal, "A world has this name");
-    EXPECT_EQ(world.feed.world(), "default");
-    EXPECT_THAT(notices, testing::IsEmpty()) << "the handler shows the reason";
-}
-
-TEST_F(ViewedWorldTest, ShowsAnotherWorldAfterDeletingTheViewedOne) {
-    ViewedWorld world{wanted()};
-    auto session = begin(world);
-    show_first_snapshot(world, session, 50);
-    world.remove("default");
-    const auto remove = session.read_request();
-    EXPECT_EQ(remove.delete_world().world(), "default");
-    session.answer(remove);
-    until(world, [&] { return session.unread_bytes() > 0; });
-    const auto list = session.read_request();
-    EXPECT_TRUE(list.has_list_worlds());
-    evod::v1::ServerMessage message;
-    message.mutable_response()->set_request_id(list.request_id());
-    message.mutable_response()->mutable_worlds()->add_worlds()->set_name("omega");
-    session.send(message);
-    until(world, [&] { return world.feed.world() == "omega"; });
-}
-
 } // namespace
 } // namespace evod::viewer
