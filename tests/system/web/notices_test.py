@@ -74,7 +74,6 @@ class Notices(Case):
                 ("undo", lambda: self.key(Keys.CONTROL + "z"), watching, browser.take_part,
                  lambda: browser.take_part(False)),
                 ("live", lambda: self.key("["), "The world is live", self.replay, self.live),
-                ("live button", lambda: browser.click(browser.element(".time-play")), "live", self.replay, self.live),
                 ("replay button", lambda: (self.replay(), browser.click("Fork")), watching,
                  browser.take_part, lambda: (browser.take_part(False), self.live())),
                 ("end of the replay", lambda: (self.replay_at_its_end(), self.key(Keys.SPACE)), "the end of the replay",
