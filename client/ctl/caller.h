@@ -96,7 +96,7 @@ std::string colored_state_of(const v1::WorldInfo& world);
 std::string durability_warning(const v1::Welcome& welcome);
 /// Returns the requested speed, and whether the world is slower than requested: "2×", "max", "100× (slower)".
 std::string speed_of(const v1::WorldInfo& world);
-/// Describes a world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
+/// Describes a world in a sentence: "default: running at 1×, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);
 
 /// Throws Stop with one line for each mistake.

@@ -18,7 +18,7 @@ struct Durations {
 /// The simulated seconds until a world that runs `generations` more has run them, at most.
 double simulated_s_left(const v1::WorldInfo& world, const Durations& durations, std::uint64_t generations);
 
-/// Returns how fast a world runs, what that means, and how long it needs: "at 1x, a generation of 40.0 s takes 40.0 s:
+/// Returns how fast a world runs, what that means, and how long it needs: "at 1×, a generation of 40.0 s takes 40.0 s:
 /// 30 generations take about 20:00 min; evoctl speed max is faster".
 ///
 /// generations  nullopt: without an end.

@@ -285,7 +285,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
     }
     if (count && seen < *count && !interrupted()) {
         throw Stop{ExitCode::Refused, "only " + std::to_string(seen) + " of " + std::to_string(*count) +
-                                          " events happened: the world is gone"};
+                                          " events arrived, then the world was deleted or damaged"};
     }
 }
 
@@ -308,7 +308,7 @@ void add_watch_commands(command_line::Command& app, const Common& common) {
     auto& count = events.keep(std::optional<std::uint64_t>{});
     events
         .add_option("--count", &count,
-                    "Exit after this many events; default: until Ctrl-C, or until the world is deleted")
+                    "Exit after this many events; default: until Ctrl-C, or until the world is deleted or damaged")
         .check(at_least_one);
     events.footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
     events.action([&] { follow_events(common, count); });

@@ -199,11 +199,12 @@ Column BodyReader::column(std::size_t count) {
         result = plain(count);
         break;
     default:
-        refuse("has a column of width " + std::to_string(width & ~with_exceptions) + ", not 0, 1, 2 or 4");
+        refuse("has a column of " + std::to_string(width & ~with_exceptions) + " bytes per value, allowed 0, 1, 2, 4");
     }
     for (std::size_t i = 0; i < indices.size() && !damage_; ++i) {
         if (indices[i] >= count) {
-            refuse("has an exception at index " + std::to_string(indices[i]) + " of " + std::to_string(count));
+            refuse("has a separately stored value for index " + std::to_string(indices[i]) + " of " +
+                   std::to_string(count) + " values");
         } else {
             result[indices[i]] = values[i];
         }

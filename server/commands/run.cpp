@@ -428,7 +428,7 @@ base::Result<void> fewer_processes_than_islands(std::uint32_t processes, std::ui
 /// Prints statistics to stdout, progress and errors to stderr. Returns the exit status.
 int run(const RunOptions& options, const SharedWork& shared) {
     if (options.ask && shared.processes.size() > 1) {
-        fail("--ask: several processes cannot ask");
+        fail("--ask: not possible with several processes; start evod run without mpirun");
         return exit_value_not_allowed;
     }
     auto beginning = beginning_of(options);
@@ -476,7 +476,7 @@ int run(const RunOptions& options, const SharedWork& shared) {
     return options.json ? print_end_as_json(simulation.world, cost) : print_end(simulation.world, cost);
 }
 
-/// What was started, as text.
+/// The options that decide what is computed, as text. share_worlds() compares it between the processes.
 std::string text_of(const RunOptions& options) {
     std::string text = "run " + options.experiment + "\n" + options.population + "\n" + options.run_file + "\n" +
                        std::to_string(options.seed.value_or(0)) + " " + std::to_string(options.generations.value_or(0));

@@ -144,7 +144,7 @@ class Commands(WithServer):
     def test_a_world_behind_its_pace_is_marked_slower(self):
         self.evoctl("speed", "10000")
         self.evoctl("run")
-        waiting.until(lambda: "10000x (slower)" in self.evoctl("status"), "it is measured")
+        waiting.until(lambda: "10000× (slower)" in self.evoctl("status"), "it is measured")
 
     def test_parameters_are_set_all_or_none(self):
         self.evoctl("set", "selection=tournament", "mutation_chance=0.05", "mutate_survivors=true", "tournament_size=4")
@@ -204,7 +204,7 @@ class Commands(WithServer):
                                                         "evoctl speed max is faster")
         self.evoctl("speed", "100")
         lines = said("run", "2", "--wait")
-        self.assertEqual(lines[0], "at 100x, a generation of 1.5 s takes 0.0 s: 2 generations take about 0.0 s")
+        self.assertEqual(lines[0], "at 100×, a generation of 1.5 s takes 0.0 s: 2 generations take about 0.0 s")
         self.assertEqual([line.split(":")[0] for line in lines[1:]], ["generation 3", "generation 4"])
         self.evoctl("speed", "2")
         shown = self.on_terminal("run", "1", "--wait")

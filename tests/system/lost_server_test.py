@@ -133,7 +133,7 @@ class Worlds(Case):
         session.answer(self.subscribed(session), subscription=c.Subscription(subscription_id=1))
         session.answer(session.request("list_worlds"), worlds=c.WorldList())
         session.send(event=stream_pb2.Event(world="lesson", world_deleted=stream_pb2.WorldDeleted()))
-        self.assertIn("only 1 of 2 events happened", self.ended(1))
+        self.assertIn("only 1 of 2 events arrived", self.ended(1))
 
 
 class Answers(Case):

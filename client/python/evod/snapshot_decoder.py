@@ -178,7 +178,7 @@ class _Body:
             indices, values = self.take("<u4", exceptions), self.take("<i4", exceptions)
             width &= 127
         if width not in (0, 1, 2, 4):
-            raise DamagedData(f"a column's width is {width}, not 0, 1, 2 or 4")
+            raise DamagedData(f"a snapshot's body has a column of {width} bytes per value, allowed 0, 1, 2, 4")
         column = self.take(f"<i{width}", count).astype(numpy.int32) if width else numpy.zeros(count, numpy.int32)
         if indices is not None:
             if len(indices) and int(indices.max()) >= count:

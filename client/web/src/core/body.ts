@@ -84,7 +84,7 @@ export class BodyReader {
       values_at = this.#take(4 * exceptions);
     }
     if (width !== 0 && width !== 1 && width !== 2 && width !== 4) {
-      throw new DamagedData(`a snapshot's body has a column of width ${width}, not 0, 1, 2 or 4`);
+      throw new DamagedData(`a snapshot's body has a column of ${width} bytes per value, allowed 0, 1, 2, 4`);
     }
     const at = this.#take(count * width), bytes = this.#bytes;
     if (column_space.length < count) {
@@ -111,7 +111,7 @@ export class BodyReader {
     for (let i = 0; i < exceptions; ++i) {
       const index = u32_at(bytes, indices_at + 4 * i);
       if (index >= count) {
-        throw new DamagedData(`a snapshot's body has an exception at index ${index} of ${count}`);
+        throw new DamagedData(`a snapshot's body has a separately stored value for index ${index} of ${count} values`);
       }
       column[index] = u32_at(bytes, values_at + 4 * i);
     }

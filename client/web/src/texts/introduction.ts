@@ -8,7 +8,9 @@ export interface IntroductionStep {
 export const introduction_steps: readonly IntroductionStep[] = [
   {
     title: "What you see",
-    text: "An island with organisms. The arc around each one is its health. Food is green, poison is red.",
+    text:
+      "Evolution, live: an island with organisms that are bred generation by generation. The arc around each one is " +
+      "its health. Food is green, poison is red.",
   },
   {
     title: "What they want",
