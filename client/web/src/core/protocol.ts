@@ -5,9 +5,7 @@
 // no other names.
 
 /** The cases of a oneof as pairs, such as One<EventKinds>. A switch over `kind` knows the type of `value`. */
-export type One<Cases> = {
-  [Kind in keyof Cases] -?: {kind: Kind; value: Cases[Kind]}
-}[keyof Cases];
+export type One<Cases> = {[Kind in keyof Cases]-?: {kind: Kind; value: Cases[Kind]}}[keyof Cases];
 
 /** The 64-bit fields that are a bigint if the value exceeds 2^53. All others are numbers, rounded beyond 2^53. */
 export const wide_fields: ReadonlySet<string> = new Set(["seed"]);
@@ -29,20 +27,20 @@ export type ParameterEffect = "PARAMETER_EFFECT_UNSPECIFIED"|"PARAMETER_EFFECT_N
  *  ACTOR_KIND_SCHEDULE: the schedule of the world
  *  ACTOR_KIND_GOAL: the world reached its goal, or a replay finished a seek
  *  ACTOR_KIND_SERVER: the server itself, because a lease expired */
-export type ActorKind =
-  "ACTOR_KIND_UNSPECIFIED"|"ACTOR_KIND_CLIENT"|"ACTOR_KIND_SCHEDULE"|"ACTOR_KIND_GOAL"|"ACTOR_KIND_SERVER";
+export type ActorKind = "ACTOR_KIND_UNSPECIFIED"|"ACTOR_KIND_CLIENT"|"ACTOR_KIND_SCHEDULE"|"ACTOR_KIND_GOAL"|
+  "ACTOR_KIND_SERVER";
 
 /** Whether a world runs.
  *  RUN_STATE_WAITING: the world is idle until Run
  *  RUN_STATE_PAUSED: the world has a goal but is paused
  *  RUN_STATE_TERMINATED: a termination criterion has ended the run */
-export type RunState =
-  "RUN_STATE_UNSPECIFIED"|"RUN_STATE_WAITING"|"RUN_STATE_RUNNING"|"RUN_STATE_PAUSED"|"RUN_STATE_TERMINATED";
+export type RunState = "RUN_STATE_UNSPECIFIED"|"RUN_STATE_WAITING"|"RUN_STATE_RUNNING"|"RUN_STATE_PAUSED"|
+  "RUN_STATE_TERMINATED";
 
 /** The termination criterion that ended a run.
  *  OUTCOME_UNSPECIFIED: the run has not ended */
-export type Outcome =
-  "OUTCOME_UNSPECIFIED"|"OUTCOME_GENERATION_LIMIT"|"OUTCOME_TARGET_FITNESS"|"OUTCOME_STAGNATION"|"OUTCOME_EXTINCTION";
+export type Outcome = "OUTCOME_UNSPECIFIED"|"OUTCOME_GENERATION_LIMIT"|"OUTCOME_TARGET_FITNESS"|"OUTCOME_STAGNATION"|
+  "OUTCOME_EXTINCTION";
 
 /** Whether the server can write runs to the disk.
  *  STORAGE_STATE_FAILING: writes fail: commands are refused with UNAVAILABLE, worlds continue
@@ -61,8 +59,8 @@ export type GeneGroup = "GENE_GROUP_UNSPECIFIED"|"GENE_GROUP_BODY"|"GENE_GROUP_B
 /** Why an organism died.
  *  CAUSE_OF_DEATH_UNSPECIFIED: the organism is alive
  *  CAUSE_OF_DEATH_REMOVED: a Remove removed it */
-export type CauseOfDeath =
-  "CAUSE_OF_DEATH_UNSPECIFIED"|"CAUSE_OF_DEATH_STARVED"|"CAUSE_OF_DEATH_POISONED"|"CAUSE_OF_DEATH_REMOVED";
+export type CauseOfDeath = "CAUSE_OF_DEATH_UNSPECIFIED"|"CAUSE_OF_DEATH_STARVED"|"CAUSE_OF_DEATH_POISONED"|
+  "CAUSE_OF_DEATH_REMOVED";
 
 /** The action of an organism in the next tick, computed from the current items. If food or poison reappears at the start
  *  of that tick, the action may differ.
@@ -668,27 +666,10 @@ export interface EventKinds {
 }
 
 /** The names in EventKinds. */
-export const event_kinds: readonly(keyof EventKinds)[] = [
-  "generation_finished",
-  "parameters_changed",
-  "run_control_changed",
-  "migration",
-  "extinction",
-  "run_terminated",
-  "world_created",
-  "world_reset",
-  "world_deleted",
-  "server_going_away",
-  "events_dropped",
-  "storage_changed",
-  "change_dropped",
-  "change_planned",
-  "change_cancelled",
-  "placed",
-  "removed",
-  "fitness_awaited",
-  "fitness_set",
-  "world_damaged"
+export const event_kinds: readonly (keyof EventKinds)[] = ["generation_finished", "parameters_changed",
+  "run_control_changed", "migration", "extinction", "run_terminated", "world_created", "world_reset", "world_deleted",
+  "server_going_away", "events_dropped", "storage_changed", "change_dropped", "change_planned", "change_cancelled",
+  "placed", "removed", "fitness_awaited", "fitness_set", "world_damaged"
 ];
 
 export interface Event extends Partial<EventKinds> {
@@ -934,8 +915,8 @@ export type ItemKind = "ITEM_KIND_UNSPECIFIED"|"ITEM_KIND_FOOD"|"ITEM_KIND_POISO
 export type MetricKind = "METRIC_KIND_UNSPECIFIED"|"METRIC_KIND_COUNTER"|"METRIC_KIND_GAUGE"|"METRIC_KIND_HISTOGRAM";
 
 /** How an organism came into the next generation. */
-export type DescendantKind =
-  "DESCENDANT_KIND_UNSPECIFIED"|"DESCENDANT_KIND_ELITE"|"DESCENDANT_KIND_SURVIVOR"|"DESCENDANT_KIND_CHILD";
+export type DescendantKind = "DESCENDANT_KIND_UNSPECIFIED"|"DESCENDANT_KIND_ELITE"|"DESCENDANT_KIND_SURVIVOR"|
+  "DESCENDANT_KIND_CHILD";
 
 /** How a gene was changed.
  *  MUTATION_KIND_CLAMP: the value was outside its bounds and was set to the nearest bound
