@@ -224,7 +224,8 @@ class Refused(Folder):
         self.assertIn("ended: generation_limit", run(mpirun(1, alone, "run", file)).stdout)
 
     def test_questions_and_parts_of_a_sweep(self):
-        self.refused(mpirun(2, EVOD, "run", "--ask"), 2, "evod: --ask: not possible with several processes; start evod run without mpirun\n")
+        self.refused(mpirun(2, EVOD, "run", "--ask"), 2,
+                     "evod: --ask: not possible with several processes; start evod run without mpirun\n")
         sweep = self.file(Sweep.MIXED)
         for option in ["--dry-run"], ["--gather"], ["--array-index", 0]:
             with self.subTest(option):
