@@ -15,7 +15,7 @@ export type SeenKind = "placed"|"removed"|"migration"|"fork";
 export interface SeenEvent {
   kind: SeenKind;
   generation: number;
-  label: string; // beside the mark
+  label: string; // next to the mark
   text: string;
 }
 

@@ -1,6 +1,6 @@
 // TimeMarks: what stands on the time line: labels of generations, and marks where parameters changed, where all
 // organisms died, and of what the page has seen happen: placed, removed, migrated, forked. Where there is room, a mark
-// has its name beside it. They are rebuilt after a change, but not more often than every rebuild_ms.
+// has its name next to it. They are rebuilt after a change, but not more often than every rebuild_ms.
 import type {GenerationStatistics} from "../core/protocol";
 import {marks_of} from "../plots/change_marks";
 import {with_separators} from "../texts/numbers";

@@ -15,9 +15,9 @@ export interface PanelContext {
   world(): ViewedWorld;
   /** The world of the other pane if two are shown side by side. */
   other(): ViewedWorld|null;
-  /** Shows a second world beside the first, and focuses it. */
+  /** Shows a second world next to the first, and focuses it. */
   show_beside(world: string, island?: number): void;
-  /** Creates a world that starts from the shown moment, and shows it beside its origin. */
+  /** Creates a world that starts from the shown moment, and shows it next to its origin. */
   fork(name?: string): Promise<void>;
   /** Opens a panel by its name, with a subject: open("glass box", {generation: 3, organism: 7}). */
   open(panel: string, subject?: {[key: string]: unknown}): void;

@@ -57,7 +57,7 @@ export function label_of_choice(choice: string): string {
   return plain(choice);
 }
 
-/** Returns the unit beside a number: "px", "island" after 1, "islands" after 2. Empty if there is none, or if it is
+/** Returns the unit after a number: "px", "island" after 1, "islands" after 2. Empty if there is none, or if it is
  * too long. */
 export function unit_text(about: ParameterDescription, number: number): string {
   const unit = about.unit ?? "";
