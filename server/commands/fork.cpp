@@ -1,9 +1,9 @@
 // `evod fork`: creates a new world that begins with a generation of a stored run.
-#include "server/replay/fork.h"
 #include "proto/command_line/command.h"
 #include "server/base/inline_executor.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
+#include "server/replay/run_file_fork.h"
 #include "server/run_file/data_folder.h"
 #include "server/runtime/random_ids.h"
 #include "server/simulation/world_name.h"

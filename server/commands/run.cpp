@@ -340,9 +340,9 @@ struct Simulation {
             try_to([&] { return recording->follow(world); });
         }
     }
-    void turn_over() {
+    void breed_next_generation() {
         const auto began = Clock::now();
-        world.turn_over(executor);
+        world.breed_next_generation(executor);
         cost.turnover_s += seconds_since(began);
     }
     /// The tick up to which the world advances at once.
@@ -376,7 +376,7 @@ struct Simulation {
         const simulation::GenerationRows ended = world.history().back();
         const bool goes_on = world.outcome() == evolution::Outcome::Running;
         if (goes_on) {
-            turn_over();
+            breed_next_generation();
             const auto began = Clock::now();
             advance_slice(); // a run file contains a generation from its first tick on, as a server writes it
             cost.tick_s += seconds_since(began);

@@ -180,7 +180,7 @@ Result<void> GenerationReader::advance_to_generation(std::uint64_t generation) {
                 return done;
             }
         } else if (rerun_->world().outcome() == evolution::Outcome::Running) {
-            rerun_->turn_over(executor_);
+            rerun_->breed_next_generation(executor_);
         } else {
             return damaged(generation, "begins after the end of the run");
         }

@@ -221,7 +221,7 @@ Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base:
     }
     while (rerun && rerun->world().moment().generation < generation && !rerun->changes().fault()) {
         if (rerun->world().generation_over()) {
-            rerun->turn_over(executor);
+            rerun->breed_next_generation(executor);
         } else {
             rerun->advance_tick(executor);
         }

@@ -148,7 +148,7 @@ class Rerun {
     simulation::World take() && { return std::move(world_); }
 
     /// If a generation is over, breeds the next one, as the next tick would.
-    void turn_over(base::Executor& executor) { world_.turn_over(executor); }
+    void breed_next_generation(base::Executor& executor) { world_.breed_next_generation(executor); }
     /// The state hash after the last tick, before the commands that followed it. Run files contain these hashes.
     const base::StateHash& hash_of_tick() const { return hash_of_tick_; }
     /// Simulates one tick, then applies the changes after it, up to journal entry `last`. The run must not be

@@ -262,7 +262,7 @@ class StretchCheck {
         if (world.outcome() != evolution::Outcome::Running) {
             return differ(moment, {"the run's end", "later", "before this generation"});
         }
-        rerun.turn_over(executor_);
+        rerun.breed_next_generation(executor_);
         const run_file::GenerationBegun again = run_file::beginning_of(world);
         if (same(moment, compare(next.opening, again.opening)) && !next.born.empty()) {
             (void)check_births(moment, next, again);

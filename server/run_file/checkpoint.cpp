@@ -73,7 +73,7 @@ base::Result<void> unpack(std::string_view packed, std::span<const simulation::I
                           simulation::WorldState& state) {
     // The size is checked before any memory is allocated.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
-    if (auto checked = simulation::check_state_bytes(bytes, shapes); !checked) {
+    if (auto checked = simulation::check_state_size(bytes, shapes); !checked) {
         return checked;
     }
     std::string columns(bytes, '\0');

@@ -1,5 +1,5 @@
 // Fork: how the server carries out ForkWorld, the fork of a live world or of a replay. `evod fork`, the fork of a run
-// file, is in replay/fork.h.
+// file, is in replay/run_file_fork.h.
 //
 // World     as it is now: a copy, made on the thread of the original (Laboratory::construction, ReplayLoop::fork). At
 //           an earlier generation: the loop of the replays seeks there in the stored run (ComputeForkWorld in mail.h).

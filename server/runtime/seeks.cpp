@@ -28,7 +28,7 @@ bool advance_tick(replay::SeekStart& seek, base::Executor& executor) {
         return true;
     }
     if (world.moment().generation < seek.to.generation && world.generation_over()) {
-        seek.from.turn_over(executor);
+        seek.from.breed_next_generation(executor);
     } else if (world.outcome() == evolution::Outcome::Running) {
         seek.from.advance_tick(executor);
         if (seek.from.changes().fault()) {

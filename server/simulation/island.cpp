@@ -232,8 +232,8 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
         stepper_.collide(bodies_, boxes_, executor);
     }
 
-    food_feeding_.begin(block_count);
-    poison_feeding_.begin(block_count);
+    food_claims_.begin(block_count);
+    poison_claims_.begin(block_count);
     resize_blocks(block_count);
     executor.parallel_for(block_count, grain, [&](base::Range blocks) {
         for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
@@ -320,8 +320,8 @@ void Island::move(std::size_t block) {
     FoundIndices at_food{food_indices}, at_poison{poison_indices};
     const OrganismColumns organisms = columns();
     organism_kernels().follow(organisms, range.begin, range.end, at_food, at_poison);
-    food_feeding_.find_touches(block, {at_food.indices, at_food.count}, bodies_, food_);
-    poison_feeding_.find_touches(block, {at_poison.indices, at_poison.count}, bodies_, poison_);
+    food_claims_.find_touches(block, {at_food.indices, at_food.count}, bodies_, food_);
+    poison_claims_.find_touches(block, {at_poison.indices, at_poison.count}, bodies_, poison_);
 
     std::uint32_t dying_indices[physics::circles_per_block];
     FoundIndices dying{dying_indices};

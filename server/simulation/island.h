@@ -26,7 +26,7 @@
 #include "server/physics/step.h"
 #include "server/simulation/behaviour.h"
 #include "server/simulation/commands.h"
-#include "server/simulation/feeding.h"
+#include "server/simulation/item_claims.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living_organisms.h"
 #include "server/simulation/perception.h"
@@ -225,7 +225,7 @@ class Island {
     std::uint32_t crate_count_ = 0;
     Items food_, poison_;
     Perception perception_;
-    Feeding food_feeding_, poison_feeding_;
+    ItemClaims food_claims_, poison_claims_;
     LifeRecords life_records_;
     IslandCounts counts_;
     std::uint32_t alive_count_ = 0;

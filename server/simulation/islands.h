@@ -98,8 +98,8 @@ class Islands {
     ///
     /// generation  the generation that has ended.
     /// routes      the migrants of this epoch; empty if there are none.
-    virtual void turn_over(const parameters::Parameters& parameters, std::uint64_t generation,
-                           std::span<const evolution::MigrationRoute> routes, base::Executor& executor) = 0;
+    virtual void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
+                                       std::span<const evolution::MigrationRoute> routes, base::Executor& executor) = 0;
     /// Places or removes entities after a tick of the generation. check() has accepted the command (entities.h).
     ///
     /// returns  the ids of the new entities, without island and generation.

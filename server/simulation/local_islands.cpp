@@ -134,9 +134,9 @@ std::vector<GenerationStatistics> LocalIslands::end_generation(const parameters:
     return statistics;
 }
 
-void LocalIslands::turn_over(const parameters::Parameters& parameters, std::uint64_t generation,
-                             std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
-                             const std::function<void(std::vector<Migrants>&)>& carry) {
+void LocalIslands::breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
+                                         std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
+                                         const std::function<void(std::vector<Migrants>&)>& carry) {
     const auto key_of = [&](std::size_t i) -> evolution::BreedingKey {
         return {.seed = seed_, .island = islands_[i].index(), .generation = generation};
     };

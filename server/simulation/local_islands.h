@@ -33,17 +33,17 @@ class LocalIslands final : public Islands {
     std::vector<GenerationStatistics> end_generation(const parameters::Parameters& parameters, std::uint32_t tick,
                                                      std::span<const std::vector<double>> given,
                                                      base::Executor& executor) override;
-    void turn_over(const parameters::Parameters& parameters, std::uint64_t generation,
-                   std::span<const evolution::MigrationRoute> routes, base::Executor& executor) override {
-        turn_over(parameters, generation, routes, executor, [](std::vector<Migrants>&) {});
+    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
+                               std::span<const evolution::MigrationRoute> routes, base::Executor& executor) override {
+        breed_next_generation(parameters, generation, routes, executor, [](std::vector<Migrants>&) {});
     }
     /// The same, with migrants from and to other islands of the world.
     ///
     /// carry  carry(migrants) gets the migrants of each route that begins on one of these islands, by route. It adds
     ///        those of the routes that end on one of them. Called if there are routes.
-    void turn_over(const parameters::Parameters& parameters, std::uint64_t generation,
-                   std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
-                   const std::function<void(std::vector<Migrants>&)>& carry);
+    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
+                               std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
+                               const std::function<void(std::vector<Migrants>&)>& carry);
     EntityIds place(const PlaceEntities& command, const parameters::Parameters& parameters,
                     std::uint32_t tick) override;
     void remove(const RemoveEntities& command, std::uint32_t tick) override;

@@ -1,4 +1,4 @@
-// Meals: what organisms eat in a tick, and which of them die. Feeding has found which body touches which item.
+// Meals: what organisms eat in a tick, and which of them die. ItemClaims has found which body touches which item.
 #include "server/simulation/island.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
                                              base::Executor& executor) {
     // Organisms are processed in blocks, in parallel. The grids of items are then changed sequentially.
     constexpr std::size_t events_worth_dividing = 128;
-    std::size_t events = food_feeding_.award() + poison_feeding_.award();
+    std::size_t events = food_claims_.award() + poison_claims_.award();
     for (const Block& block : blocks_) {
         events += block.dying.size();
     }
@@ -32,15 +32,15 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
         counts_.poisoned_count += block.poisoned;
         alive_count_ -= block.starved + block.poisoned;
     }
-    const auto take_out = [this](Items& items, const Feeding& feeding) {
+    const auto take_out = [this](Items& items, const ItemClaims& claims) {
         constexpr std::size_t blocks_ahead = 4;
         for (std::size_t block = 0; block < blocks_.size(); ++block) {
             if (block + blocks_ahead < blocks_.size()) {
-                for (const Touch& touch : feeding.touches(block + blocks_ahead)) {
+                for (const Touch& touch : claims.touches(block + blocks_ahead)) {
                     items.prefetch_place(touch.place);
                 }
             }
-            for (const Touch& touch : feeding.touches(block)) {
+            for (const Touch& touch : claims.touches(block)) {
                 if (touch.gets_it) {
                     items.take_out(touch.item, touch.place);
                 }
@@ -48,7 +48,7 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
         }
     };
     for_each_kind(
-        executor, [&] { take_out(food_, food_feeding_); }, [&] { take_out(poison_, poison_feeding_); });
+        executor, [&] { take_out(food_, food_claims_); }, [&] { take_out(poison_, poison_claims_); });
     return organisms;
 }
 
@@ -57,7 +57,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
     Block& block = blocks_[index];
     block.food_hash_change = block.poison_hash_change = block.eaten_hash_change = {};
     block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
-    for (const Touch& touch : food_feeding_.touches(index)) {
+    for (const Touch& touch : food_claims_.touches(index)) {
         food_.prefetch_item(touch.item);
         __builtin_prefetch(&life_records_.food_eaten[touch.id], 1);
         __builtin_prefetch(&bodies_.id[touch.body]);
@@ -68,7 +68,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         __builtin_prefetch(&living_.health[touch.body], 1);
     }
     // All food is eaten before all poison. Items of one kind are equal, so their order does not matter.
-    for (const Touch& touch : food_feeding_.touches(index)) {
+    for (const Touch& touch : food_claims_.touches(index)) {
         if (!touch.gets_it) {
             continue;
         }
@@ -81,7 +81,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
         count_eaten(block, touch.id, life_records_.food_eaten, food_counts_);
         ++block.food_eaten;
     }
-    for (const Touch& touch : poison_feeding_.touches(index)) {
+    for (const Touch& touch : poison_claims_.touches(index)) {
         if (!touch.gets_it) {
             continue;
         }
@@ -93,7 +93,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
     }
     // The cost of living is subtracted at the beginning of a tick, and poison at its end. If a dying organism ate
     // poison in this tick, poison was therefore the cause of death.
-    for (const Touch& touch : poison_feeding_.touches(index)) {
+    for (const Touch& touch : poison_claims_.touches(index)) {
         if (touch.gets_it && is_dying(touch.body)) {
             record_death(block, touch.body, tick, CauseOfDeath::Poisoned);
             ++block.poisoned;

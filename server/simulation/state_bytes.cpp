@@ -235,7 +235,7 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
     write(bytes.take());
 }
 
-Result<void> check_state_bytes(std::size_t bytes, std::span<const IslandShape> shapes) {
+Result<void> check_state_size(std::size_t bytes, std::span<const IslandShape> shapes) {
     const PlacedCounts most{placed_max, placed_max, placed_max};
     const std::vector<PlacedCounts> most_placed(shapes.size(), most);
     std::vector<std::uint32_t> most_given;

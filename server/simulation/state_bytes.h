@@ -25,6 +25,6 @@ std::size_t bytes_of_state(const WorldState& state);
 /// Reads what write_state() has written. Refused unless the bytes are a state of islands with these shapes.
 base::Result<void> read_state(std::string_view bytes, std::span<const IslandShape> shapes, WorldState& state);
 /// Refuses a number of bytes that no state of islands with these shapes has.
-base::Result<void> check_state_bytes(std::size_t bytes, std::span<const IslandShape> shapes);
+base::Result<void> check_state_size(std::size_t bytes, std::span<const IslandShape> shapes);
 
 } // namespace evod::simulation

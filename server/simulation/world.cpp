@@ -157,7 +157,7 @@ bool World::is_as_begun() const {
            std::ranges::all_of(islands_->summaries(), &IslandSummary::is_as_begun);
 }
 
-void World::turn_over(base::Executor& executor) {
+void World::breed_next_generation(base::Executor& executor) {
     if (!generation_over_) {
         return;
     }
@@ -172,7 +172,7 @@ void World::turn_over(base::Executor& executor) {
         routes = evolution::plan_migration(populations, p, seed_, moment_.generation);
         std::erase_if(routes, [](const evolution::MigrationRoute& route) { return route.count == 0; });
     }
-    islands_->turn_over(p, moment_.generation, routes, executor);
+    islands_->breed_next_generation(p, moment_.generation, routes, executor);
     if (!routes.empty()) {
         MigrationHappened happened{.generation = moment_.generation, .edges = {}};
         for (const evolution::MigrationRoute& route : routes) {
@@ -191,7 +191,7 @@ void World::advance(std::uint64_t tick, base::Executor& executor) {
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
     EVOD_ASSERT(!awaits_fitness());
     if (generation_over_) {
-        turn_over(executor);
+        breed_next_generation(executor);
     }
     if (moment_.generation_tick == 0) {
         parameters_.begin_tick();

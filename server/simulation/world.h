@@ -111,7 +111,7 @@ class World {
     void advance(std::uint64_t tick, base::Executor& executor);
 
     /// Breeds and places the next generation, as advance_tick() would; does nothing if no generation has ended.
-    void turn_over(base::Executor& executor);
+    void breed_next_generation(base::Executor& executor);
 
     const Moment& moment() const { return moment_; }
     base::Seed seed() const { return seed_; }

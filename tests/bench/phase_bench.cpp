@@ -133,8 +133,8 @@ class OpenIsland {
         stepper_.collide(bodies_, boxes_, executor_);
         laps.lap(ResolveContacts);
 
-        food_feeding_.begin(block_count);
-        poison_feeding_.begin(block_count);
+        food_claims_.begin(block_count);
+        poison_claims_.begin(block_count);
         dying_.resize(block_count);
         hash_ = {};
         for (std::size_t block = 0; block < block_count; ++block) {
@@ -184,8 +184,8 @@ class OpenIsland {
         std::uint32_t food_indices[physics::circles_per_block], poison_indices[physics::circles_per_block];
         FoundIndices at_food{food_indices}, at_poison{poison_indices};
         organism_kernels().follow(columns(), range.begin, range.end, at_food, at_poison);
-        food_feeding_.find_touches(block, {at_food.indices, at_food.count}, bodies_, food_);
-        poison_feeding_.find_touches(block, {at_poison.indices, at_poison.count}, bodies_, poison_);
+        food_claims_.find_touches(block, {at_food.indices, at_food.count}, bodies_, food_);
+        poison_claims_.find_touches(block, {at_poison.indices, at_poison.count}, bodies_, poison_);
         laps.lap(Follow);
         std::uint32_t dying_indices[physics::circles_per_block];
         FoundIndices dying{dying_indices};
@@ -196,10 +196,10 @@ class OpenIsland {
     }
 
     void feed_and_remove_dead(std::size_t block_count) {
-        food_feeding_.award();
-        poison_feeding_.award();
+        food_claims_.award();
+        poison_claims_.award();
         for (std::size_t block = 0; block < block_count; ++block) {
-            for (const Touch& touch : food_feeding_.touches(block)) {
+            for (const Touch& touch : food_claims_.touches(block)) {
                 if (touch.gets_it) {
                     const float cap = health_cap(chromosomes_.col(static_cast<Eigen::Index>(touch.id)), parameters_);
                     change_health(
@@ -209,14 +209,14 @@ class OpenIsland {
                     ++life_records_.food_eaten[touch.id];
                 }
             }
-            for (const Touch& touch : poison_feeding_.touches(block)) {
+            for (const Touch& touch : poison_claims_.touches(block)) {
                 if (touch.gets_it) {
                     change_health(touch.body, living_.health[touch.body] - static_cast<float>(parameters_.poison_harm));
                     poison_.add_to_hash(poison_.set_due(touch.item, tick_));
                     ++life_records_.poison_eaten[touch.id];
                 }
             }
-            for (const Touch& touch : poison_feeding_.touches(block)) {
+            for (const Touch& touch : poison_claims_.touches(block)) {
                 if (touch.gets_it) {
                     bury_if_dying(touch.body, CauseOfDeath::Poisoned);
                 }
@@ -225,16 +225,16 @@ class OpenIsland {
                 bury_if_dying(body, CauseOfDeath::Starved);
             }
         }
-        take_out(food_, food_feeding_, block_count);
-        take_out(poison_, poison_feeding_, block_count);
+        take_out(food_, food_claims_, block_count);
+        take_out(poison_, poison_claims_, block_count);
     }
 
-    static void take_out(Items& items, const Feeding& feeding, std::size_t block_count) {
+    static void take_out(Items& items, const ItemClaims& claims, std::size_t block_count) {
         for (std::size_t block = 0; block < block_count; ++block) {
-            for (const Touch& touch : feeding.touches(block)) {
+            for (const Touch& touch : claims.touches(block)) {
                 items.prefetch_place(touch.place);
             }
-            for (const Touch& touch : feeding.touches(block)) {
+            for (const Touch& touch : claims.touches(block)) {
                 if (touch.gets_it) {
                     items.take_out(touch.item, touch.place);
                 }
@@ -275,7 +275,7 @@ class OpenIsland {
     base::RandomKey key_;
     Perception perception_;
     physics::Stepper stepper_;
-    Feeding food_feeding_, poison_feeding_;
+    ItemClaims food_claims_, poison_claims_;
     LifeRecords life_records_;
     base::Column<std::uint32_t> body_of_, spare_column_;
     std::vector<std::vector<std::uint32_t>> dying_;

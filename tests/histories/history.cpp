@@ -2,7 +2,7 @@
 
 #include "server/base/overloaded.h"
 #include "server/protocol/commands.h"
-#include "server/replay/fork.h"
+#include "server/replay/run_file_fork.h"
 #include "server/replay/run_tables.h"
 #include "server/replay/verify.h"
 #include "tests/support/shared_worlds.h"

@@ -70,7 +70,7 @@ bool Twins::advance(const std::string& name, std::uint64_t tick) {
             return false;
         }
         if (world.generation_over()) {
-            world.turn_over(executor_);
+            world.breed_next_generation(executor_);
             memories_.at(name).openings.insert_or_assign(world.moment().generation, world.copy(executor_));
         }
         laboratory_.advance(entry, executor_);

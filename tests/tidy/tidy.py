@@ -311,7 +311,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server", "main"): "system/console_test",
     ("server/base", "column"): "unit/physics and unit/simulation: the memory of all columns",
     ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
-    ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/fork and replay/verify",
+    ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/run_file_fork and replay/verify",
     ("server/commands", "json_lines"): "unit/commands/run_test, sweep_test and compare_test: options of these commands",
     ("server/commands", "shared_worlds"): "system/mpi_test",
     ("server/commands", "limits parameters serve"): "system/console_test; their logic is parameters/ and serve_options",

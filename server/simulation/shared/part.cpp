@@ -191,10 +191,11 @@ std::vector<GenerationStatistics> Part::perform(const EndGeneration& order, base
 bool Part::perform(const TurnOver& order, base::Executor& executor) {
     bool fits = true, migrants_exchanged = order.routes.empty();
     try {
-        islands_.turn_over(parameters_, order.generation, order.routes, executor, [&](std::vector<Migrants>& migrants) {
-            carry(order.routes, migrants);
-            migrants_exchanged = true;
-        });
+        islands_.breed_next_generation(parameters_, order.generation, order.routes, executor,
+                                       [&](std::vector<Migrants>& migrants) {
+                                           carry(order.routes, migrants);
+                                           migrants_exchanged = true;
+                                       });
     } catch (const std::bad_alloc&) {
         if (!migrants_exchanged) {
             throw; // the others wait for migrants

@@ -29,7 +29,7 @@ class BundleTest : public testing::Test {
         ASSERT_TRUE(writer.follow(world));
         for (std::uint64_t ended = 0; ended < generations; ended += world.generation_over() ? 1 : 0) {
             if (world.generation_over()) {
-                world.turn_over(executor);
+                world.breed_next_generation(executor);
             }
             world.advance_tick(executor);
             ASSERT_TRUE(writer.follow(world));

@@ -25,7 +25,7 @@ class RunWriterTest : public testing::Test {
         base::Result<void> followed = writer.follow(world);
         for (int tick = 0; followed && tick != ticks && world.outcome() == evolution::Outcome::Running; ++tick) {
             if (world.generation_over()) {
-                world.turn_over(executor);
+                world.breed_next_generation(executor);
             }
             world.advance_tick(executor);
             followed = writer.follow(world);

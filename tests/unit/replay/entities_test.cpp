@@ -2,8 +2,8 @@
 #include "server/simulation/entities.h"
 
 #include "server/replay/breeding.h"
-#include "server/replay/fork.h"
 #include "server/replay/recovery.h"
+#include "server/replay/run_file_fork.h"
 #include "tests/unit/replay/stored_run_fixture.h"
 
 #include <gmock/gmock.h>

@@ -1,8 +1,8 @@
 #include "server/simulation/first_population.h"
 
 #include "server/replay/archive.h"
-#include "server/replay/fork.h"
 #include "server/replay/rerun.h"
+#include "server/replay/run_file_fork.h"
 #include "server/replay/verify.h"
 #include "tests/unit/recording/recorded_run.h"
 

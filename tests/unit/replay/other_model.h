@@ -26,7 +26,7 @@ inline std::unique_ptr<RunFile> record_other_model(const std::string& path, cons
             world.advance_tick(executor);
         }
         file->write(end_of(world));
-        world.turn_over(executor);
+        world.breed_next_generation(executor);
         file->write(beginning_of(world));
     }
     EXPECT_TRUE(file->commit());

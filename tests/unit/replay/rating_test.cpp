@@ -1,9 +1,9 @@
 // Runs in which clients rated the organisms: recovery, verification, forks, missing numbers.
 #include "server/simulation/rating.h"
 
-#include "server/replay/fork.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
+#include "server/replay/run_file_fork.h"
 #include "tests/unit/replay/stored_run_fixture.h"
 
 #include <gmock/gmock.h>

@@ -2,10 +2,10 @@
 
 #include "server/jobs/thread_pool.h"
 #include "server/parameters/experiment.h"
-#include "server/replay/fork.h"
 #include "server/replay/past_changes.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
+#include "server/replay/run_file_fork.h"
 #include "server/replay/verify.h"
 #include "tests/unit/recording/recorded_run.h"
 

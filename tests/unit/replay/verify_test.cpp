@@ -1,9 +1,9 @@
 // Verifies runs as they were recorded, and runs with one record changed, with a right checksum.
 #include "server/replay/verify.h"
 
-#include "server/replay/archive.h"
-#include "server/replay/fork.h"
 #include "server/jobs/thread_pool.h"
+#include "server/replay/archive.h"
+#include "server/replay/run_file_fork.h"
 #include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>

@@ -1,8 +1,8 @@
 // Runs whose chromosomes have more than six genes: recovery, replay, verification, forks, tables, migration.
 #include "server/replay/breeding.h"
-#include "server/replay/fork.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
+#include "server/replay/run_file_fork.h"
 #include "tests/unit/replay/stored_run_fixture.h"
 
 #include <gmock/gmock.h>

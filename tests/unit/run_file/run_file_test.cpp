@@ -105,7 +105,7 @@ TEST_F(RunFileTest, ReadsBackEverythingThatWasWritten) {
                                  {world.outcomes()[1].fitness, world.islands()[1].life_records().lived_ticks,
                                   world.islands()[1].life_records().cause}},
                                 world.history().back()};
-    world.turn_over(executor);
+    world.breed_next_generation(executor);
     const GenerationBegun second{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};
     const JournalEntry entry{
         .number = 1,

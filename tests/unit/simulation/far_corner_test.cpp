@@ -63,8 +63,8 @@ TEST(TheFarCorner, HasTheSameMotionsBitForBit) {
         for (std::size_t i = 0; i < here.boxes.size(); ++i) {
             ASSERT_EQ(there.boxes.x[i] - here.boxes.x[i], shift_x) << "tick " << tick << ", box " << i;
         }
-        ASSERT_EQ(there.meals(there.food_feeding).size(), here.meals(here.food_feeding).size()) << "tick " << tick;
-        eaten += here.meals(here.food_feeding).size();
+        ASSERT_EQ(there.meals(there.food_claims).size(), here.meals(here.food_claims).size()) << "tick " << tick;
+        eaten += here.meals(here.food_claims).size();
         here.eat();
         there.eat();
         for (std::uint32_t item = 0; item < here.food.size(); ++item) {

@@ -5,7 +5,7 @@
 #include "server/base/inline_executor.h"
 #include "server/physics/step.h"
 #include "server/simulation/behaviour.h"
-#include "server/simulation/feeding.h"
+#include "server/simulation/item_claims.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living_organisms.h"
 #include "server/simulation/perception.h"
@@ -31,7 +31,7 @@ struct Meadow {
     base::InlineExecutor executor;
     physics::Stepper stepper;
     Perception perception;
-    Feeding food_feeding, poison_feeding;
+    ItemClaims food_claims, poison_claims;
     std::uint32_t tick = 0;
 
     /// At rest; the id is the number of organisms added before.
@@ -89,30 +89,30 @@ struct Meadow {
             stepper.accelerate(bodies, block, {forces.x.data(), forces.y.data()});
         }
         stepper.collide(bodies, boxes, executor);
-        food_feeding.begin(blocks);
-        poison_feeding.begin(blocks);
+        food_claims.begin(blocks);
+        poison_claims.begin(blocks);
         for (std::size_t block = 0; block < blocks; ++block) {
             stepper.move(bodies, block);
             const base::Range range = physics::circles_of_block(bodies.size(), block);
             std::uint32_t food_indices[physics::circles_per_block], poison_indices[physics::circles_per_block];
             FoundIndices at_food{food_indices}, at_poison{poison_indices};
             organism_kernels().follow(columns(), range.begin, range.end, at_food, at_poison);
-            food_feeding.find_touches(block, {food_indices, at_food.count}, bodies, food);
-            poison_feeding.find_touches(block, {poison_indices, at_poison.count}, bodies, poison);
+            food_claims.find_touches(block, {food_indices, at_food.count}, bodies, food);
+            poison_claims.find_touches(block, {poison_indices, at_poison.count}, bodies, poison);
         }
         stepper.finish(boxes);
-        food_feeding.award();
-        poison_feeding.award();
+        food_claims.award();
+        poison_claims.award();
     }
 
     /// An item and the body that gets it.
     struct Meal {
         std::uint32_t item, body;
     };
-    std::vector<Meal> meals(const Feeding& feeding) const {
+    std::vector<Meal> meals(const ItemClaims& claims) const {
         std::vector<Meal> meals;
         for (std::size_t block = 0; block < physics::block_count(bodies.size()); ++block) {
-            for (const Touch& touch : feeding.touches(block)) {
+            for (const Touch& touch : claims.touches(block)) {
                 if (touch.gets_it) {
                     meals.push_back({touch.item, touch.body});
                 }
@@ -122,10 +122,10 @@ struct Meadow {
     }
 
     void eat() {
-        for (const Meal& meal : meals(food_feeding)) {
+        for (const Meal& meal : meals(food_claims)) {
             food.consume(meal.item, tick);
         }
-        for (const Meal& meal : meals(poison_feeding)) {
+        for (const Meal& meal : meals(poison_claims)) {
             poison.consume(meal.item, tick);
         }
     }

@@ -5,9 +5,9 @@
 // to 10), with their standard errors; every comparison allows 4 standard errors of the difference (6e-5, two-sided).
 
 #include "server/base/inline_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "server/parameters/experiment.h"
 #include "server/simulation/world.h"
-#include "server/jobs/thread_pool.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 #include "server/simulation/placement.h"
 
 #include "server/base/inline_executor.h"
+#include "server/jobs/thread_pool.h"
 #include "server/physics/shapes.h"
 #include "tests/support/chi_square.h"
-#include "server/jobs/thread_pool.h"
 
 #include <gtest/gtest.h>
 

@@ -66,7 +66,7 @@ TEST_F(ScheduleTest, AValueHoldsFromTheFirstTickOfItsGeneration) {
     EXPECT_EQ(world.parameters().active.mutation_chance, 0.2);
     world.take_events();
 
-    world.turn_over(executor); // bred with the previous values; the food is already the new amount
+    world.breed_next_generation(executor); // bred with the previous values; the food is already the new amount
     EXPECT_EQ(world.opening().parameters.active.mutation_chance, 0.2);
     EXPECT_EQ(world.opening().parameters.active.food_count, 7u);
     EXPECT_EQ(world.islands()[0].food().size(), 7u);
@@ -159,7 +159,7 @@ TEST_F(ScheduleTest, ReportsValuesThatNoLongerFit) {
 TEST_F(ScheduleTest, AForkAtAnOpeningContinuesAlike) {
     World world = make(read(R"("mutation_chance": {"3": 0.6, "5": 0.1}, "population_size": {"1": 12, "3": 20})"));
     end_generation(world, 2);
-    world.turn_over(executor);
+    world.breed_next_generation(executor);
     World fork = world.at_its_opening(executor), asked = world.at_its_opening(executor);
     set(asked, "mutation_chance", 0.33); // the value scheduled for this generation is already requested
     asked.advance_tick(executor);

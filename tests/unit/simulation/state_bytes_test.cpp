@@ -57,8 +57,8 @@ TEST(StateBytes, AreReadAgain) {
     ASSERT_EQ(again.ended.size(), 2u);
     EXPECT_EQ(again.ended[0].fitness_best, -0.5);
     EXPECT_EQ(again.ended[0].genes[2].mean, 0.25);
-    EXPECT_TRUE(check_state_bytes(bytes.size(), shapes_of_full_state()));
-    EXPECT_FALSE(check_state_bytes(10, shapes_of_full_state()));
+    EXPECT_TRUE(check_state_size(bytes.size(), shapes_of_full_state()));
+    EXPECT_FALSE(check_state_size(10, shapes_of_full_state()));
     for (std::size_t size = 0; size < bytes.size(); ++size) {
         EXPECT_FALSE(read_state(std::string_view{bytes}.substr(0, size), shapes_of_full_state(), again));
     }

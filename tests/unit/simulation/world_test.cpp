@@ -81,10 +81,10 @@ TEST_F(WorldTest, TurnOverEqualsThatOfTheNextTick) {
     World at_once = make(), in_two = make();
     run_generation(at_once);
     run_generation(in_two);
-    in_two.turn_over(executor);
+    in_two.breed_next_generation(executor);
     EXPECT_EQ(in_two.moment().generation, 2u);
     EXPECT_EQ(in_two.moment().generation_tick, 0u);
-    in_two.turn_over(executor); // no generation has ended
+    in_two.breed_next_generation(executor); // no generation has ended
     EXPECT_EQ(in_two.moment().generation, 2u);
     at_once.advance_tick(executor);
     in_two.advance_tick(executor);
@@ -167,7 +167,7 @@ TEST_F(WorldTest, MigratesExactlyOncePerEpoch) {
     std::vector<std::uint64_t> generations;
     for (int generation = 1; generation <= 6; ++generation) {
         run_generation(world);
-        world.turn_over(executor);
+        world.breed_next_generation(executor);
         for (const MigrationHappened& happened : events<MigrationHappened>(world)) {
             generations.push_back(happened.generation);
             ASSERT_EQ(happened.edges.size(), 3u);
@@ -274,8 +274,8 @@ TEST_F(WorldTest, BreedsByShuffledFitnessAndReportsTheTrueOne) {
     }
     const std::vector<std::span<const double>> spans(fitness.begin(), fitness.end());
     evolution::migrate(evolution::choose_migrants(spans, parameters, base::Seed{5}, 1), populations);
-    world.turn_over(executor);
-    plain.turn_over(executor);
+    world.breed_next_generation(executor);
+    plain.breed_next_generation(executor);
     for (std::uint32_t i = 0; i < 3; ++i) {
         const auto expected = evolution::next_generation(
             fitness[i], genes[i], parameters, 12, {.seed = base::Seed{5}, .island = i, .generation = 1}, executor);
@@ -327,7 +327,7 @@ TEST_F(WorldTest, FindsFoundersAcrossIslands) {
     }
     World later{base::Seed{5}, world.opening(), {std::move(born), {}}, {}, executor};
     later.advance_tick(executor);
-    later.turn_over(executor);
+    later.breed_next_generation(executor);
     EXPECT_TRUE(later.islands().founders(0).empty()) << "unknown without the first generation";
     later = later.restarted(base::Seed{6});
     EXPECT_EQ(later.islands().founders(2)[11], 35u);
@@ -374,7 +374,7 @@ TEST_F(WorldTest, ChildrenHaveHalfTheirGenesFromTheFounder) {
         World world = make();
         const evolution::GeneMatrix first = world.islands()[0].born().genes;
         world.advance_tick(executor);
-        world.turn_over(executor);
+        world.breed_next_generation(executor);
         const Island& island = world.islands()[0];
         for (std::uint32_t id = 0; id < 2'000; ++id) {
             EXPECT_GE((island.born().genes.col(id) == first.col(world.islands().founders(island.index())[id])).count(),
@@ -513,7 +513,7 @@ TEST_F(WorldTest, ReplacesEverythingAtUniformPlacesEachGeneration) {
     const auto food = world.islands()[0].food().all();
     const auto bodies = world.islands()[0].bodies().x;
     run_generation(world);
-    world.turn_over(executor);
+    world.breed_next_generation(executor);
     EXPECT_NE(world.islands()[0].food().all()[0].x, food[0].x);
     EXPECT_NE(world.islands()[0].bodies().x, bodies);
     EXPECT_EQ(world.islands()[0].food().present_count(), 25u);

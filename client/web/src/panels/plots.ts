@@ -12,7 +12,7 @@ import {h, set_text} from "../widgets/dom";
 import {accept_drops, save_file} from "../widgets/files";
 import {row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
-import {QuantityTabs, ScopeChoice} from "./plots_choices";
+import {QuantityTabs, IslandAndMeanChoice} from "./plots_choices";
 import {CompareChoice} from "./plots_compare";
 import {GeneChoice} from "./plots_genes";
 import {GeneHistogram} from "./plots_histogram";
@@ -28,7 +28,7 @@ export class PlotsPanel implements Panel {
   readonly #context: PanelContext;
   readonly #comparison: Comparison;
   readonly #compare: CompareChoice;
-  readonly #scope = new ScopeChoice(() => this.refresh());
+  readonly #scope = new IslandAndMeanChoice(() => this.refresh());
   readonly #genes = new GeneChoice(() => this.#rebuild());
   readonly #explanation = h("p", {class: "hint"});
   readonly #content = h("div", {class: "panel"}, this.#genes.element, this.#explanation);

@@ -1,4 +1,4 @@
-// QuantityTabs and ScopeChoice: which quantity the plots show; for which island, and smoothed over how many
+// QuantityTabs and IslandAndMeanChoice: which quantity the plots show; for which island, and smoothed over how many
 // generations.
 import {quantities} from "../plots/figures";
 import type {Quantity} from "../plots/figures";
@@ -71,7 +71,7 @@ export class QuantityTabs {
   }
 }
 
-export class ScopeChoice {
+export class IslandAndMeanChoice {
   readonly #smooth: HTMLSelectElement;
   readonly #island: HTMLSelectElement;
   readonly element: HTMLElement;

@@ -4,7 +4,7 @@ import {access_texts} from "../texts/access";
 import {common_texts} from "../texts/common";
 
 import type {Changes} from "./changes";
-import type {RunControl} from "./control";
+import type {RunControl} from "./run_control";
 import type {SnapshotFeed} from "./feed";
 import type {WorldHistory} from "./history";
 import {Refusal} from "./server";

@@ -8,7 +8,7 @@ import type {Event} from "../core/protocol";
 import type {SnapshotInfo} from "../core/snapshot";
 
 import {Changes} from "./changes";
-import {RunControl} from "./control";
+import {RunControl} from "./run_control";
 import {SnapshotFeed} from "./feed";
 import {WorldHistory} from "./history";
 import {ParameterReader} from "./parameter_reader";

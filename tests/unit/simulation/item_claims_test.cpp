@@ -33,10 +33,10 @@ Items items_of(std::uint32_t count, base::Purpose placement, physics::Area area,
 /// As if every body might touch an item.
 using Meal = Meadow::Meal;
 
-std::vector<Meal> awarded(Feeding& feeding) {
-    const std::size_t count = feeding.award();
+std::vector<Meal> awarded(ItemClaims& claims) {
+    const std::size_t count = claims.award();
     std::vector<Meal> meals;
-    for (const Touch& touch : feeding.touches(0)) {
+    for (const Touch& touch : claims.touches(0)) {
         if (touch.gets_it) {
             meals.push_back({touch.item, touch.body});
         }
@@ -48,10 +48,10 @@ std::vector<Meal> awarded(Feeding& feeding) {
 std::vector<Meal> meals_of(const physics::Circles& bodies, const Items& items) {
     std::vector<std::uint32_t> all(bodies.size());
     std::iota(all.begin(), all.end(), 0u);
-    Feeding feeding;
-    feeding.begin(1);
-    feeding.find_touches(0, all, bodies, items);
-    return awarded(feeding);
+    ItemClaims claims;
+    claims.begin(1);
+    claims.find_touches(0, all, bodies, items);
+    return awarded(claims);
 }
 
 std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Items& items) {
@@ -88,7 +88,7 @@ void expect_equal(std::vector<Meal> meals, const std::vector<Meal>& expected, co
     }
 }
 
-TEST(Feeding, GivesAnItemToTheNearestBodyThenTheLowestId) {
+TEST(ItemClaims, GivesAnItemToTheNearestBodyThenTheLowestId) {
     const Items items = items_of(1, base::Purpose::FoodPlacement, {to_units(500.0), to_units(500.0)});
     const auto meal = [&](std::vector<std::pair<double, double>> offsets) {
         physics::Circles bodies;
@@ -108,7 +108,7 @@ TEST(Feeding, GivesAnItemToTheNearestBodyThenTheLowestId) {
     EXPECT_EQ(meal({{8, 0}, {5, 5}, {-3, 4}, {0, 5}, {4, -3}}).front().body, 2u);
 }
 
-TEST(Feeding, LetsOneOrganismEatSeveralItems) {
+TEST(ItemClaims, LetsOneOrganismEatSeveralItems) {
     const Items items = items_of(30, base::Purpose::FoodPlacement, {to_units(20.0), to_units(20.0)});
     physics::Circles bodies;
     bodies.add({.id = 0, .x = to_units(10.0), .y = to_units(10.0), .radius = 15, .mass = 1});
@@ -207,14 +207,14 @@ TEST_P(AMeadow, PerceivesAndFeedsLikeATestOfAllItems) {
         meadow.act();
         looked += static_cast<std::size_t>(std::count_if(
             columns.food.others, columns.food.others + meadow.bodies.size(), [](float others) { return others < 0; }));
-        expect_equal(meadow.meals(meadow.food_feeding), meals_by_trying_all(meadow.bodies, meadow.food), "food",
+        expect_equal(meadow.meals(meadow.food_claims), meals_by_trying_all(meadow.bodies, meadow.food), "food",
                      static_cast<int>(tick));
-        expect_equal(meadow.meals(meadow.poison_feeding), meals_by_trying_all(meadow.bodies, meadow.poison), "poison",
+        expect_equal(meadow.meals(meadow.poison_claims), meals_by_trying_all(meadow.bodies, meadow.poison), "poison",
                      static_cast<int>(tick));
         if (HasFatalFailure()) {
             return;
         }
-        eaten += meadow.meals(meadow.food_feeding).size() + meadow.meals(meadow.poison_feeding).size();
+        eaten += meadow.meals(meadow.food_claims).size() + meadow.meals(meadow.poison_claims).size();
         meadow.eat();
     }
     EXPECT_GT(eaten, 100u);

@@ -1,4 +1,4 @@
-#include "server/replay/fork.h"
+#include "server/replay/run_file_fork.h"
 
 #include "server/replay/archive.h"
 #include "server/replay/generation_reader.h"
@@ -204,7 +204,7 @@ TEST_F(ForkTest, AForkHasTheHistoryAndFoundersOfItsOrigin) {
     }
     (*file)->begin();
     (*file)->write(end_of(recovered->world));
-    recovered->world.turn_over(executor);
+    recovered->world.breed_next_generation(executor);
     (*file)->write(beginning_of(recovered->world));
     ASSERT_TRUE((*file)->commit());
 

@@ -1,4 +1,4 @@
-#include "server/replay/fork.h"
+#include "server/replay/run_file_fork.h"
 
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"

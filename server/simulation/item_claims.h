@@ -1,4 +1,4 @@
-// Feeding: finds which bodies touch which items of one kind after the tick's move, and which body gets each item.
+// Item claims: finds which bodies touch which items of one kind after the tick's move, and which body gets each item.
 //
 // Threads      blocks of bodies are searched in parallel.
 // Determinism  an item goes to the nearest body that touches it; if bodies are equally near, to the one with the lowest
@@ -22,7 +22,7 @@ struct Touch {
     bool gets_it; // valid after award(); exactly one body that touches an item gets it
 };
 
-class Feeding {
+class ItemClaims {
   public:
     /// Prepares a search of `blocks` blocks. find_touches() clears the previous touches of its block.
     void begin(std::size_t blocks);

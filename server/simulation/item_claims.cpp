@@ -1,4 +1,4 @@
-#include "server/simulation/feeding.h"
+#include "server/simulation/item_claims.h"
 
 #include "server/base/assert.h"
 #include "server/physics/broad_phase.h"
@@ -8,14 +8,14 @@
 
 namespace evod::simulation {
 
-void Feeding::begin(std::size_t blocks) {
+void ItemClaims::begin(std::size_t blocks) {
     constexpr std::size_t usually_enough = 32;
     physics::resize_lists(touches_of_block_, blocks, usually_enough);
     first_of_item_.reserve(4 * blocks * usually_enough);
 }
 
-void Feeding::find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
-                           const Items& items) {
+void ItemClaims::find_touches(std::size_t block, std::span<const std::uint32_t> at_items,
+                              const physics::Circles& bodies, const Items& items) {
     EVOD_ASSERT(block < touches_of_block_.size());
     std::vector<Touch>& touches = touches_of_block_[block];
     touches.clear();
@@ -31,7 +31,7 @@ void Feeding::find_touches(std::size_t block, std::span<const std::uint32_t> at_
     }
 }
 
-std::size_t Feeding::award() {
+std::size_t ItemClaims::award() {
     std::size_t count = 0;
     for (const std::vector<Touch>& touches : touches_of_block_) {
         count += touches.size();

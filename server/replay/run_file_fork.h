@@ -1,7 +1,8 @@
-// Fork: creates a run that begins with a moment of another run, with the same seed, organisms and parameters. So every
-// later difference between the two runs is caused by a command (common random numbers).
+// Fork of a run file (`evod fork`): creates a run that begins with a moment of another run, with the same seed,
+// organisms and parameters. So every later difference between the two runs is caused by a command (common random
+// numbers).
 //
-// `evod fork` uses it, for run files. How the server forks a live world or a replay is in runtime/fork.h.
+// How the server forks a live world or a replay is in runtime/fork.h.
 #pragma once
 
 #include "server/run_file/run_file.h"
