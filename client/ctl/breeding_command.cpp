@@ -119,6 +119,10 @@ std::string name_of(v1::MutationKind kind) {
         return "bit flip";
     case v1::MUTATION_KIND_CLAMP:
         return "onto its bound";
+    case v1::MUTATION_KIND_REFLECT:
+        return "mirrored at its bound";
+    case v1::MUTATION_KIND_REDRAW:
+        return "drawn again";
     default:
         return "mutation " + std::to_string(kind);
     }
@@ -149,6 +153,9 @@ std::string descendant_text(const v1::Breeding& bred, const v1::WorldInfo& world
         const auto& d = bred.descendants(i);
         const bool child = d.kind() == v1::DESCENDANT_KIND_CHILD;
         std::string genes_of = child ? codec::parents_of_genes(d) : "";
+        if (d.crossed_genes_size() > 0) {
+            genes_of += " spread";
+        }
         if (d.second_share() > 0) {
             genes_of = fixed(1 - d.second_share(), 3) + " of 1 + " + fixed(d.second_share(), 3) + " of 2";
         }

@@ -92,7 +92,8 @@ class Descent {
         , crossover_{parameters, static_cast<unsigned>(present.rows())}
         , order_mutation_{parameters}
         , mutation_{parameters}
-        , bounds_{gene_bounds(parameters)} {
+        , bounds_{gene_bounds(parameters)}
+        , spread_index_{parameters.crossover_spread_index} {
         EVOD_ASSERT(present.rows() == gene_count(parameters));
     }
 
@@ -120,23 +121,30 @@ class Descent {
         return crossover_.draw(mixture, random);
     }
 
-    /// Writes the genes of a child to `child`. `second_share` is that of the pair's mixture; `place` is the child's
-    /// index in the next generation. Returns the number of clamped genes.
+    /// Writes the genes of a child to `child`. `mixture` is that of the pair, whose mask is not read; `place` is the
+    /// child's index in the next generation. Returns the number of genes that were outside their bounds.
     template <class By>
-    unsigned make_child(const Inheritance<extent>& of, double second_share, std::uint32_t place,
+    unsigned make_child(const Inheritance<extent>& of, const Mixture<extent>& mixture, std::uint32_t place,
                         std::span<float, extent> child, By&& by) const {
+        cross(of, mixture, child);
+        base::RandomStream order{order_mutation_key_, place}, mutation{mutation_key_, place};
+        by.mutate_order(order_mutation_, child, order);
+        return by.mutate(mutation_, child, mutation);
+    }
+
+    /// Writes the genes that a child has after the crossover, before all mutations.
+    void cross(const Inheritance<extent>& of, const Mixture<extent>& mixture, std::span<float, extent> child) const {
         EVOD_ASSERT(of.parents.first < static_cast<std::size_t>(present_.cols()));
         EVOD_ASSERT(of.parents.second < static_cast<std::size_t>(present_.cols()));
         const auto first = column<extent>(present_, of.parents.first),
                    second = column<extent>(present_, of.parents.second);
-        if (second_share > 0) {
-            blend(first, second, second_share, child);
+        if (mixture.spreads) {
+            spread(first, second, of.from_second, *mixture.spreads, bounds_, spread_index_, child);
+        } else if (mixture.second_share > 0) {
+            blend(first, second, mixture.second_share, child);
         } else {
-            cross(first, second, of.from_second, child);
+            evolution::cross(first, second, of.from_second, child);
         }
-        base::RandomStream order{order_mutation_key_, place}, mutation{mutation_key_, place};
-        by.mutate_order(order_mutation_, child, order);
-        return by.mutate(mutation_, child, mutation);
     }
 
   private:
@@ -146,6 +154,7 @@ class Descent {
     OrderMutation order_mutation_;
     ValueMutation<extent> mutation_;
     GeneBounds bounds_;
+    double spread_index_;
 };
 
 } // namespace evod::evolution

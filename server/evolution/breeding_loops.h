@@ -55,8 +55,8 @@ class Breeding {
                 const Inheritance<extent> inheritance = inheritance_of(pair, mixture.from_second);
                 mixture.from_second.complement();
                 next.parents[place] = inheritance.parents;
-                clamped += descent_.make_child(inheritance, mixture.second_share, place,
-                                               column<extent>(next.genes, place), WithoutRecord{});
+                clamped += descent_.make_child(inheritance, mixture, place, column<extent>(next.genes, place),
+                                               WithoutRecord{});
             }
             return clamped;
         });

@@ -163,7 +163,11 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
             descendant.parents = inheritance.parents;
             descendant.from_second = inheritance.from_second;
             descendant.second_share = mixture.second_share;
-            descent.make_child(inheritance, mixture.second_share, place, child_genes, WithRecord{descendant});
+            if (mixture.spreads) {
+                descendant.crossed_genes.resize(child_genes.size());
+                descent.cross(inheritance, mixture, descendant.crossed_genes);
+            }
+            descent.make_child(inheritance, mixture, place, child_genes, WithRecord{descendant});
         }
         descendant.first_genes = chromosome(genes, descendant.parents.first);
         descendant.second_genes = chromosome(genes, descendant.parents.second);

@@ -1,8 +1,10 @@
 #include "server/evolution/crossover.h"
 
 #include "server/base/assert.h"
+#include "server/base/elementary.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace evod::evolution {
 namespace {
@@ -19,6 +21,7 @@ unsigned cut_count(const Parameters& parameters) {
     case CrossoverMethod::Uniform:
     case CrossoverMethod::Blend:
     case CrossoverMethod::None:
+    case CrossoverMethod::SimulatedBinary:
         break;
     }
     return 0;
@@ -44,6 +47,19 @@ std::uint64_t draw_below(std::uint64_t bound, base::RandomStream& random) {
             return word % bound;
         }
     }
+}
+
+/// Bits of a word of Mixture::spreads: whether the gene is spread, and whether it comes from the second parent. The
+/// other bits are those of the uniform number.
+constexpr std::uint32_t is_spread = 1, is_swapped = 2;
+
+/// Returns β of a child whose bound is `room` beyond the parent, relative to the distance of the parents: its cumulative
+/// probability is `uniform` if the distribution is cut off at the bound.
+double spread_factor(double uniform, double room, double index) {
+    const double mass =
+        2 - base::pow(1 + 2 * room, -(index + 1)); // twice the probability of the values within the bound
+    const double doubled = uniform * mass;
+    return base::pow(doubled <= 1 ? doubled : 1 / (2 - doubled), 1 / (index + 1));
 }
 
 } // namespace
@@ -96,6 +112,24 @@ bool Crossover<extent>::draw(Mixture<extent>& mixture, base::RandomStream& rando
         if (weight > 0.5) {
             mixture.from_second.complement();
         }
+    } else if (method_ == CrossoverMethod::SimulatedBinary) {
+        auto& words = mixture.spreads.emplace();
+        if constexpr (extent == std::dynamic_extent) {
+            words.resize(gene_count_);
+        }
+        for (std::uint32_t& word : words) {
+            word = random.word();
+        }
+        unsigned gene = 0;
+        mixture.from_second.assign([&] {
+            std::uint32_t swapped = 0;
+            const unsigned end = std::min<unsigned>(gene + GeneMask<extent>::word_bits, gene_count_);
+            for (unsigned bit = 0; gene < end; ++gene, ++bit) {
+                const bool both = (words[gene] & is_spread) != 0 && (words[gene] & is_swapped) != 0;
+                swapped |= std::uint32_t{both} << bit;
+            }
+            return swapped;
+        });
     } else {
         const std::uint64_t index = draw_below(cut_set_count_, random);
         mixture.from_second = masks_.empty() ? mask_of_cuts(index) : masks_[index];
@@ -117,5 +151,30 @@ void blend(std::span<const float, extent> first, std::span<const float, extent> 
 template void blend(std::span<const float, body_gene_count>, std::span<const float, body_gene_count>, double,
                     std::span<float, body_gene_count>);
 template void blend(ConstGenes, ConstGenes, double, Genes);
+
+template <std::size_t extent>
+void spread(std::span<const float, extent> first, std::span<const float, extent> second,
+            const GeneMask<extent>& from_second, const PerGene<std::uint32_t, extent>& words, const GeneBounds& bounds,
+            double index, std::span<float, extent> child) {
+    for (unsigned gene = 0; gene < child.size(); ++gene) {
+        const float same = from_second.contains(gene) ? second[gene] : first[gene],
+                    other = from_second.contains(gene) ? first[gene] : second[gene];
+        const double min = double{bounds.min[gene]}, max = double{bounds.max[gene]};
+        const double near = std::clamp(double{same}, min, max), far = std::clamp(double{other}, min, max);
+        if ((words[gene] & is_spread) == 0 || near == far) {
+            child[gene] = same;
+            continue;
+        }
+        const double uniform = ((words[gene] / 4) + 0.5) * 0x1p-30;
+        const double distance = std::abs(near - far), room = near < far ? near - min : max - near;
+        const double half = (near - far) / 2 * spread_factor(uniform, room / distance, index);
+        child[gene] = std::clamp(static_cast<float>((near + far) / 2 + half), bounds.min[gene], bounds.max[gene]);
+    }
+}
+template void spread(std::span<const float, body_gene_count>, std::span<const float, body_gene_count>,
+                     const GeneMask<body_gene_count>&, const PerGene<std::uint32_t, body_gene_count>&,
+                     const GeneBounds&, double, std::span<float, body_gene_count>);
+template void spread(ConstGenes, ConstGenes, const GeneMask<>&, const PerGene<std::uint32_t, std::dynamic_extent>&,
+                     const GeneBounds&, double, Genes);
 
 } // namespace evod::evolution

@@ -3,10 +3,10 @@
 // Every method except blend draws one mask per pair: the genes that the first child inherits from the second parent.
 // The second child has the complementary mask, so no gene of either parent is lost. Blend draws one weight per pair:
 // every gene of the first child is a weighted mean of the parents' genes, and the second child has the complementary
-// weights.
+// weights. Simulated binary crossover draws one word per gene.
 // Source  De Jong 1975 and Eshelman, Caruana & Schaffer 1989 (cut points); Syswerda 1989, "Uniform crossover in genetic
 //         algorithms"; Michalewicz 1996, "Genetic Algorithms + Data Structures = Evolution Programs" (arithmetic
-//         crossover).
+//         crossover); Deb & Agrawal 1995, "Simulated binary crossover for continuous search space".
 #pragma once
 
 #include "server/base/random.h"
@@ -16,6 +16,7 @@
 #include "server/evolution/gene_mask.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct Mixture {
 
     GeneMask<extent> from_second; // the genes of which the second parent gives all or, with blend, the larger share
     double second_share = 0;      // blend: the smaller of the two parents' weights, in (0, ½); other methods: 0
+    // simulated_binary: the word of each gene, of which spread() makes the values of both children
+    std::optional<PerGene<std::uint32_t, extent>> spreads;
 };
 
 template <std::size_t extent = std::dynamic_extent>
@@ -46,6 +49,8 @@ class Crossover {
     /// blend         the weight of the second parent is (k + ½)/2^32, where each of the 2^32 values of k is equally
     ///               likely; draws one word. The weight is never ½, and 1 − weight is exact. The mask contains all
     ///               genes if the weight is above ½, otherwise none.
+    /// simulated_binary  draws one word per gene. With probability ½ the gene is spread; a gene that is spread comes from
+    ///               the second parent with probability ½. Other genes stay with their parents.
     /// none          always false.
     bool draw(Mixture<extent>& mixture, base::RandomStream& random) const;
 
@@ -80,5 +85,21 @@ void cross(std::span<const float, extent> first, std::span<const float, extent> 
 template <std::size_t extent>
 void blend(std::span<const float, extent> first, std::span<const float, extent> second, double second_share,
            std::span<float, extent> child);
+
+/// Gives every gene of `child` the value that simulated binary crossover makes of the parents' genes. The child takes
+/// gene g after the second parent if `from_second` contains it, otherwise after the first one. A gene that is not
+/// spread, or is equal in both parents, is copied. Otherwise the value is m ± β (b − a) / 2 with the mean m of the
+/// parents' genes a < b, on the side of the parent that it is taken after. Without bounds, β ≤ 1 has the density
+/// ½ (index + 1) β^index, and β > 1 the density ½ (index + 1) β^−(index + 2). The distribution is cut off at the bound,
+/// so the value never leaves the bounds; parents outside the bounds count as if they were at the bound.
+/// Source  Deb & Agrawal 1995, and for the bounds Deb & Agrawal 1999, "A niched-penalty approach for constraint
+///         handling in genetic algorithms".
+///
+/// words  Mixture::spreads, the same for both children.
+/// index  crossover_spread_index.
+template <std::size_t extent>
+void spread(std::span<const float, extent> first, std::span<const float, extent> second,
+            const GeneMask<extent>& from_second, const PerGene<std::uint32_t, extent>& words, const GeneBounds& bounds,
+            double index, std::span<float, extent> child);
 
 } // namespace evod::evolution

@@ -11,9 +11,10 @@ namespace evod::evolution {
 enum class PopulationModel { Hybrid, Generational, SteadyState };
 enum class FitnessScaling { None, Windowing, LinearRanking, ExponentialRanking };
 enum class SelectionMethod { Roulette, StochasticUniversal, Tournament, Random, Truncation };
-enum class CrossoverMethod { Uniform, SinglePoint, MultiPoint, Blend, None };
+enum class CrossoverMethod { Uniform, SinglePoint, MultiPoint, Blend, None, SimulatedBinary };
 enum class OrderMutationMethod { None, Swap, Scramble, Inversion };
-enum class Creep { Uniform, Gaussian };
+enum class Creep { Uniform, Gaussian, Polynomial };
+enum class OutOfBounds { Clamp, Reflect, Redraw };
 enum class GeneGroup { All, Body, Brain, Free };
 enum class Topology { None, Ring, FullyConnected, Random };
 enum class Emigrants { Best, Random };
@@ -27,9 +28,11 @@ EVOD_CHOICE_NAMES(evod::evolution::PopulationModel, "hybrid", "generational", "s
 EVOD_CHOICE_NAMES(evod::evolution::FitnessScaling, "none", "windowing", "linear_ranking", "exponential_ranking")
 EVOD_CHOICE_NAMES(evod::evolution::SelectionMethod, "roulette", "stochastic_universal", "tournament", "random",
                   "truncation")
-EVOD_CHOICE_NAMES(evod::evolution::CrossoverMethod, "uniform", "single_point", "multi_point", "blend", "none")
+EVOD_CHOICE_NAMES(evod::evolution::CrossoverMethod, "uniform", "single_point", "multi_point", "blend", "none",
+                  "simulated_binary")
 EVOD_CHOICE_NAMES(evod::evolution::OrderMutationMethod, "none", "swap", "scramble", "inversion")
-EVOD_CHOICE_NAMES(evod::evolution::Creep, "uniform", "gaussian")
+EVOD_CHOICE_NAMES(evod::evolution::Creep, "uniform", "gaussian", "polynomial")
+EVOD_CHOICE_NAMES(evod::evolution::OutOfBounds, "clamp", "reflect", "redraw")
 EVOD_CHOICE_NAMES(evod::evolution::GeneGroup, "all", "body", "brain", "free")
 EVOD_CHOICE_NAMES(evod::evolution::Topology, "none", "ring", "fully_connected", "random")
 EVOD_CHOICE_NAMES(evod::evolution::Emigrants, "best", "random")
@@ -56,23 +59,26 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     COUNT(tournament_winners, 1, 1, 1'000'000, "organisms", NextTick, "Number of winners per tournament; at most tournament_size.") \
     FLAG(tournament_replacement, true, NextTick, "Whether an organism can be drawn more than once into the same tournament.") \
     TOPIC("Crossover")                                                                                                 \
-    CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed: uniform, single_point and multi_point give each gene of one parent to one child and that of the other parent to the other child; blend gives the children complementary weighted means of the parents.")                   \
+    CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed: uniform, single_point and multi_point give each gene of one parent to one child and that of the other parent to the other child; blend gives the children complementary weighted means of the parents; simulated_binary gives them values on both sides of the parents', mostly near them.")                   \
     REAL(crossover_chance, 1, 0, 1, "chance", NextTick, "Chance that the genes of a pair are mixed; otherwise the children are copies of the parents.") \
     COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Number of cut points of multi_point crossover.")                                     \
+    REAL(crossover_spread_index, 15, 0, 1000, "", NextTick, "Index of the distribution of simulated_binary crossover: the larger it is, the nearer children are to their parents.") \
     CHOICE(mutate_group, GeneGroup, All, NextTick, "Which genes mutate: all, those of the body, the weights of the brain, or the free genes. Crossover mixes all genes.") \
     TOPIC("Mutation")                                                                                                  \
     CHOICE(rearranging, OrderMutationMethod, None, NextTick, "Order mutation: how the values of genes are exchanged within a chromosome.") \
     REAL(rearrange_chance, 0.1, 0, 1, "chance", NextTick, "Chance per chromosome of an order mutation.")               \
-    CHOICE(creep, Creep, Uniform, NextTick, "Distribution of the step that a creep mutation adds to a gene: uniform within ± the step, or gaussian with the step as standard deviation. The step of a gene of the body is mutation_step, that of a weight of the brain is brain_mutation_step, and that of a free gene is free_mutation_step.") \
+    CHOICE(creep, Creep, Uniform, NextTick, "Distribution of the step that a creep mutation adds to a gene: uniform within ± the step, gaussian with the step as standard deviation, or polynomial, which depends on mutation_spread_index and the gene's bounds instead of a step. The step of a gene of the body is mutation_step, that of a weight of the brain is brain_mutation_step, and that of a free gene is free_mutation_step.") \
     REAL(mutation_chance, 0.15, 0, 1, "chance", NextTick, "Chance per gene of a creep mutation.")                      \
     REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation of a gene of the body: its largest step if creep is uniform, its standard deviation if creep is gaussian.") \
     REAL(brain_mutation_step, 0.5, 0, 1000, "gene units", NextTick, "Size of a creep mutation of a weight of the brain, as for mutation_step.") \
     REAL(free_mutation_step, 0.1, 0, 1e6, "gene units", NextTick, "Size of a creep mutation of a free gene, as for mutation_step.") \
+    REAL(mutation_spread_index, 20, 0, 1000, "", NextTick, "Index of the distribution of polynomial creep: the larger it is, the smaller the steps.") \
     REAL(reset_chance, 0, 0, 1, "chance", NextTick, "Chance per gene of a reset to a uniform random value within the gene's bounds; 0 means off.") \
     REAL(scale_chance, 0, 0, 1, "chance", NextTick, "Chance per chromosome that one random gene is multiplied by a random factor; 0 means off.") \
     REAL(scale_range, 0.1, 0, 1, "", NextTick, "Range of the factor of a scale mutation: uniform between 1 − scale_range and 1 + scale_range.") \
     REAL(bit_flip_chance, 0, 0, 1, "chance", NextTick, "Chance per bit of a flip in a gene's fixed-point binary code; 0 means off.") \
     COUNT(bit_flip_bits, 16, 1, 24, "bits", NextTick, "Number of bits of a gene's binary code, whose values are evenly spaced between the gene's bounds.") \
+    CHOICE(out_of_bounds, OutOfBounds, Clamp, NextTick, "What happens to a gene that a mutation moves out of its bounds: clamp sets it to the nearer bound, reflect mirrors it at the bound, redraw replaces it by a uniform random value within the bounds.") \
     TOPIC("Bounds of genes")                                                                                           \
     REAL(initial_gene_min, 80, 0, 10'000, "gene units", Reset, "Lowest value of a gene of the body in the first generation.") \
     REAL(initial_gene_max, 120, 0, 10'000, "gene units", Reset, "Highest value of a gene of the body in the first generation.") \

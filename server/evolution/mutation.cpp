@@ -80,6 +80,30 @@ double draw_normal(base::RandomStream& random) {
     return ziggurat.draw(random);
 }
 
+/// Returns value + d · (max − min) for a d that follows the law of polynomial creep.
+double polynomial_creep(double value, double min, double max, double index, base::RandomStream& random) {
+    if (!(min < max)) {
+        return min;
+    }
+    const double within = std::clamp(value, min, max);
+    const double uniform = random.uniform(), side = std::min(uniform, 1 - uniform);
+    const double room = (uniform < 0.5 ? within - min : max - within) / (max - min);
+    // side is uniform in [0, ½]; the cumulative probability of a step that goes no further than the bound.
+    const double kept = base::pow(1 - room, index + 1);
+    const double step = 1 - base::pow(2 * side + (1 - 2 * side) * kept, 1 / (index + 1));
+    return within + (uniform < 0.5 ? -step : step) * (max - min);
+}
+
+/// Returns the mirror image of a value at the bounds, repeatedly until it is within them.
+double reflected(double value, double min, double max) {
+    const double width = max - min;
+    if (!(width > 0)) {
+        return min;
+    }
+    const double beyond = std::abs(std::fmod(value - min, 2 * width)); // also if value < min: mirrored at min
+    return min + std::min(beyond, 2 * width - beyond);
+}
+
 // Up to this probability of a flip it is cheaper to draw the distances between flipped bits than to draw for each bit.
 constexpr double rare_flip_chance_max = 0.125;
 
@@ -124,11 +148,13 @@ ValueMutation<extent>::ValueMutation(const Parameters& parameters)
     , bounds_{gene_bounds(parameters)}
     , creep_{parameters.creep}
     , creep_chance_{parameters.mutation_chance}
+    , spread_index_{parameters.mutation_spread_index}
     , reset_chance_{parameters.reset_chance}
     , scale_chance_{parameters.scale_chance}
     , scale_range_{parameters.scale_range}
     , bit_flip_chance_{parameters.bit_flip_chance}
-    , bits_{parameters.bit_flip_bits} {
+    , bits_{parameters.bit_flip_bits}
+    , out_of_bounds_{parameters.out_of_bounds} {
     EVOD_ASSERT(bits_ >= 1);
     EVOD_ASSERT(bits_ <= 24);
     if constexpr (extent == std::dynamic_extent) {
@@ -189,10 +215,8 @@ unsigned ValueMutation<extent>::mutate(std::span<const float, extent> genes, bas
         }
     };
     if (!creep_chance_.is_never()) {
-        change_each(creep_chance_, [&](unsigned gene) {
-            const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
-            change(gene, ChangeKind::Creep, static_cast<float>(genes[gene] + steps_[gene] * unit));
-        });
+        change_each(creep_chance_,
+                    [&](unsigned gene) { change(gene, ChangeKind::Creep, crept(genes[gene], gene, random)); });
     }
     if (!reset_chance_.is_never()) {
         change_each(reset_chance_, [&](unsigned gene) {
@@ -204,13 +228,43 @@ unsigned ValueMutation<extent>::mutate(std::span<const float, extent> genes, bas
             change(scaled->gene, scaled->kind, scaled->after);
         }
     }
-    const unsigned clamped = clamp_all();
+    const unsigned outside = out_of_bounds_ == OutOfBounds::Clamp ? clamp_all() : bring_back(genes, random, change);
     if (!bit_flip_chance_.is_never()) {
         for (unsigned first = range().first; first < end; first += genes_per_flips) {
             flip_bits(genes, {first, std::min(genes_per_flips, end - first)}, random, change);
         }
     }
-    return clamped;
+    return outside;
+}
+
+template <std::size_t extent>
+float ValueMutation<extent>::crept(float value, unsigned gene, base::RandomStream& random) const {
+    if (creep_ == Creep::Polynomial) {
+        return static_cast<float>(polynomial_creep(double{value}, double{bounds_.min[gene]}, double{bounds_.max[gene]},
+                                                   spread_index_, random));
+    }
+    const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
+    return static_cast<float>(value + steps_[gene] * unit);
+}
+
+template <std::size_t extent>
+template <class Change>
+unsigned ValueMutation<extent>::bring_back(std::span<const float, extent> genes, base::RandomStream& random,
+                                           const Change& change) const {
+    unsigned outside = 0;
+    for (unsigned gene = 0; gene < genes.size(); ++gene) {
+        const float min = bounds_.min[gene], max = bounds_.max[gene];
+        if (genes[gene] >= min && genes[gene] <= max) {
+            continue;
+        }
+        ++outside;
+        const bool reflects = out_of_bounds_ == OutOfBounds::Reflect;
+        const double value = reflects ? reflected(double{genes[gene]}, double{min}, double{max})
+                                      : random.uniform(double{min}, double{max});
+        change(gene, reflects ? ChangeKind::Reflect : ChangeKind::Redraw,
+               std::clamp(static_cast<float>(value), min, max));
+    }
+    return outside;
 }
 
 template <std::size_t extent>

@@ -1,8 +1,10 @@
-// Value mutation: creep, random reset, scaling and bit flip give genes new values. Genes are clamped to their bounds.
+// Value mutation: creep, random reset, scaling and bit flip give genes new values. Genes that leave their bounds are
+// brought back.
 //
 // Determinism  the caller passes one stream per chromosome. The number of words drawn depends on which genes mutate.
 // Source       Eiben & Smith 2015, Introduction to Evolutionary Computing, 4.3.1 (bit flip), 4.4.1 (creep, random
-//              reset).
+//              reset); Deb & Agrawal 1999, "A niched-penalty approach for constraint handling in genetic
+//              algorithms" (polynomial creep).
 #pragma once
 
 #include "server/base/random.h"
@@ -29,7 +31,7 @@ struct BinaryView {
     float to_value(std::uint32_t code) const;
 };
 
-enum class ChangeKind { Creep, Reset, Scale, BitFlip, Clamp };
+enum class ChangeKind { Creep, Reset, Scale, BitFlip, Clamp, Reflect, Redraw };
 
 /// One change of a gene.
 struct GeneChange {
@@ -47,19 +49,22 @@ class ValueMutation {
   public:
     explicit ValueMutation(const Parameters& parameters);
 
-    /// Mutates one chromosome, in this order. Only the genes of mutate_group change, except that all genes are moved to
-    /// their bounds.
+    /// Mutates one chromosome, in this order. Only the genes of mutate_group change, except that all genes are brought
+    /// back into their bounds.
     ///
     /// creep     adds step · U to each gene with probability mutation_chance; U is uniform in (−1, 1) or standard
-    ///           normal, and the step is mutation_step, brain_mutation_step or free_mutation_step.
+    ///           normal, and the step is mutation_step, brain_mutation_step or free_mutation_step. Polynomial creep
+    ///           instead adds d · (max − min), where |d| has the density ½ (n + 1) (1 − |d|)^n with n =
+    ///           mutation_spread_index, on each side cut off at the bound.
     /// reset     replaces each gene with probability reset_chance by a value uniform within its bounds.
     /// scale     with probability scale_chance, multiplies one gene by 1 + scale_range · U; U is uniform in (−1, 1).
     ///           Each gene is equally likely. Draws the chance, the gene and one word.
-    /// bounds    moves each gene that is outside its bounds to the nearer bound, and counts it.
+    /// bounds    brings each gene that is outside its bounds back, and counts it: to the nearer bound, to its mirror image
+    ///           at the bound (repeatedly if need be), or to a uniform value within the bounds, as out_of_bounds states.
     /// bit flip  flips each bit of each gene's BinaryView with probability bit_flip_chance. A gene without a flipped
     ///           bit keeps its exact value. A gene with one gets the value of its new code.
     ///
-    /// returns  the number of clamped genes.
+    /// returns  the number of genes that were outside their bounds.
     unsigned apply(std::span<float, extent> genes, base::RandomStream& random) const;
     /// Mutates one chromosome, and also appends the changes to `changes`, in order.
     unsigned apply(std::span<float, extent> genes, base::RandomStream& random, std::vector<GeneChange>& changes) const
@@ -70,6 +75,10 @@ class ValueMutation {
     template <class Change, class Clamp>
     unsigned mutate(std::span<const float, extent> genes, base::RandomStream& random, const Change& change,
                     const Clamp& clamp_all) const;
+    /// Brings the genes back into their bounds by reflecting or redrawing them. Returns how many were outside.
+    template <class Change>
+    unsigned bring_back(std::span<const float, extent> genes, base::RandomStream& random, const Change& change) const;
+    float crept(float value, unsigned gene, base::RandomStream& random) const;
     std::optional<GeneChange> draw_scale(std::span<const float, extent> genes, base::RandomStream& random) const;
     template <class Change>
     void flip_bits(std::span<const float, extent> genes, GeneRange block, base::RandomStream& random,
@@ -89,11 +98,13 @@ class ValueMutation {
     Creep creep_;
     Chance creep_chance_;
     PerGene<double, extent> steps_{};
+    double spread_index_; // of polynomial creep
     Chance reset_chance_;
     Chance scale_chance_;
     double scale_range_;
     Chance bit_flip_chance_;
     unsigned bits_;
+    OutOfBounds out_of_bounds_;
     std::optional<RareEvents> rare_flips_; // over the bits of a block of genes, if flips are rare
 };
 

@@ -24,6 +24,10 @@ v1::MutationKind to_proto(evolution::ChangeKind kind) {
         return v1::MUTATION_KIND_BIT_FLIP;
     case evolution::ChangeKind::Clamp:
         return v1::MUTATION_KIND_CLAMP;
+    case evolution::ChangeKind::Reflect:
+        return v1::MUTATION_KIND_REFLECT;
+    case evolution::ChangeKind::Redraw:
+        return v1::MUTATION_KIND_REDRAW;
     }
     return v1::MUTATION_KIND_UNSPECIFIED;
 }
@@ -82,6 +86,7 @@ v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant,
     to.set_from_second(words.front());
     to.mutable_more_from_second()->Add(words.begin() + 1, words.end());
     to.set_second_share(descendant.second_share);
+    add(descendant.crossed_genes, *to.mutable_crossed_genes());
     to.set_crossed(descendant.crossed);
     if (descendant.order) {
         to.mutable_order_mutation()->set_method(std::string{

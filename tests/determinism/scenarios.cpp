@@ -123,6 +123,14 @@ const std::vector<Scenario>& all() {
          480,
          {}},
 
+        {"simulated_binary", // with polynomial creep, and genes that are reflected at their bounds
+         R"({"island_count": 2, "population_size": 30, "generation_s": 2, "crossover": "simulated_binary",
+             "creep": "polynomial", "out_of_bounds": "reflect", "scale_chance": 0.8, "scale_range": 1,
+             "mutate_survivors": true, "migration": "ring", "migration_epoch": 1})",
+         base::Seed{58},
+         480,
+         {{200, R"({"creep": "uniform", "mutation_step": 120, "out_of_bounds": "redraw"})"}}},
+
         {"scale_mutation", // together with the other mutations
          R"({"population_size": 40, "generation_s": 2, "scale_chance": 0.6, "scale_range": 0.4, "reset_chance": 0.02,
              "bit_flip_chance": 0.01, "mutate_survivors": true, "selection": "tournament"})",

@@ -25,6 +25,8 @@ def genes_of(descendant):
     if share:
         genes = [float(plain.numpy.float32(first + share * (second - first)))
                  for first, second in zip(descendant.first_genes, descendant.second_genes)]
+    if descendant.crossed_genes:
+        genes = list(descendant.crossed_genes)
     if descendant.HasField("order_mutation"):
         genes = [genes[gene] for gene in descendant.order_mutation.order]
     for mutation in descendant.mutations:
@@ -143,6 +145,20 @@ class Breeding(export_test.Runs):
         for name in "wf":
             done = waiting.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
             self.assertIn("everything agrees", done.stdout, done.stderr)
+
+    def test_spread_genes_can_be_computed_from_the_record(self):
+        _, client = self.serve()
+        self.run_world(client, 4, crossover="simulated_binary", creep="polynomial", scale_chance=1.0, scale_range=1.0,
+                       out_of_bounds="reflect")
+        reported = [self.breeding(client, generation=generation, island=1) for generation in range(1, 4)]
+        table = self.organisms()
+        for bred in reported:
+            self.check(bred, table)
+        children = [descendant for bred in reported for descendant in bred.descendants[bred.survivor_count:]]
+        self.assertTrue(any(gene not in (first, second) for child in children for gene, first, second in
+                            zip(child.crossed_genes, child.first_genes, child.second_genes)))
+        kinds = {mutation.kind for child in children for mutation in child.mutations}
+        self.assertEqual(kinds, {c.MUTATION_KIND_CREEP, c.MUTATION_KIND_SCALE, c.MUTATION_KIND_REFLECT})
 
     def test_blended_genes_can_be_computed_from_the_record(self):
         server, client = self.serve()

@@ -277,5 +277,87 @@ TEST(Crossover, BlendingEqualParentsCopiesThem) {
     EXPECT_EQ(child, parent);
 }
 
+/// Bounds −1 … 1 of so many genes.
+GeneBounds unit_bounds(unsigned genes) {
+    return {Eigen::ArrayXf::Constant(genes, -1), Eigen::ArrayXf::Constant(genes, 1)};
+}
+
+/// What simulated binary crossover makes of parents that have all genes at `first` and at `second`; visit(child,
+/// sibling) is called for each gene that was spread.
+template <class Visit>
+void spread_often(float first, float second, double index, std::uint64_t seed, const Visit& visit) {
+    constexpr unsigned genes = 40;
+    const Crossover<> crossover{with(CrossoverMethod::SimulatedBinary), genes};
+    const GeneBounds bounds = unit_bounds(genes);
+    const std::vector<float> one(genes, first), other(genes, second);
+    std::vector<float> child(genes), sibling(genes);
+    for (std::uint32_t pair = 0; pair < 10'000; ++pair) {
+        base::RandomStream random = stream_of(seed, pair);
+        Mixture<> mixture{genes};
+        ASSERT_TRUE(crossover.draw(mixture, random));
+        spread(ConstGenes{one}, ConstGenes{other}, mixture.from_second, *mixture.spreads, bounds, index, Genes{child});
+        mixture.from_second.complement();
+        spread(ConstGenes{one}, ConstGenes{other}, mixture.from_second, *mixture.spreads, bounds, index,
+               Genes{sibling});
+        for (unsigned gene = 0; gene < genes; ++gene) {
+            ASSERT_TRUE(child[gene] >= -1 && child[gene] <= 1 && sibling[gene] >= -1 && sibling[gene] <= 1);
+            visit(double{child[gene]}, double{sibling[gene]});
+        }
+    }
+}
+
+TEST(Crossover, SimulatedBinaryFollowsTheLawOfItsSpread) {
+    // Law: a gene is spread with probability 1/2. Its β = |difference of the children| / |difference of the parents| has
+    // the cumulative probability β^(n + 1) / 2 up to 1, and 1 − β^−(n + 1) / 2 beyond. The parents are so near to each
+    // other that the bounds cut off less than 1e-9. Chi-square over 20 equally likely cells, 19 degrees of freedom.
+    for (const double index : {2.0, 15.0}) {
+        std::vector<std::uint64_t> cells(20);
+        std::uint64_t copies = 0, swaps = 0, spreads = 0;
+        spread_often(-0x1p-12f, 0x1p-12f, index, 191, [&](double child, double sibling) {
+            ASSERT_NEAR(child + sibling, 0, 0x1p-30); // the mean of the parents
+            const double beta = std::abs(child - sibling) / 0x1p-11;
+            if (beta == 1) {
+                ++copies;
+                return;
+            }
+            ++spreads;
+            swaps += child > sibling;
+            const double below = beta <= 1 ? std::pow(beta, index + 1) / 2 : 1 - std::pow(beta, -index - 1) / 2;
+            ++cells.at(std::min<std::size_t>(19, static_cast<std::size_t>(20 * below)));
+        });
+        EXPECT_GT(support::p_value_of_equal_cells(cells), alpha) << index;
+        const std::uint64_t halves[] = {copies, spreads}, sides[] = {swaps, spreads - swaps};
+        EXPECT_GT(support::p_value_of_equal_cells(halves), alpha) << index;
+        EXPECT_GT(support::p_value_of_equal_cells(sides), alpha) << index;
+    }
+}
+
+TEST(Crossover, SimulatedBinaryIsCutOffAtTheBounds) {
+    // Law: the lower child of −0.9 and 0.1, bounded by −1, has β <= 1.2, so its cumulative probability is that of the
+    // unbounded law divided by that of 1.2. Chi-square over 20 equally likely cells, 19 degrees of freedom.
+    const double index = 2;
+    const auto below = [&](double beta) {
+        return beta <= 1 ? std::pow(beta, index + 1) / 2 : 1 - std::pow(beta, -index - 1) / 2;
+    };
+    std::vector<std::uint64_t> cells(20);
+    spread_often(-0.9f, 0.1f, index, 192, [&](double child, double sibling) {
+        const double lower = std::min(child, sibling);
+        if (lower != double{-0.9f}) {
+            const double beta = (-0.4 - lower) / 0.5;
+            ++cells.at(std::min<std::size_t>(19, static_cast<std::size_t>(20 * below(beta) / below(1.2))));
+        }
+    });
+    EXPECT_GT(support::p_value_of_equal_cells(cells), alpha);
+}
+
+TEST(Crossover, SimulatedBinaryCopiesEqualParents) {
+    spread_often(0.3f, 0.3f, 15, 193, [](double child, double sibling) {
+        ASSERT_EQ(child, double{0.3f});
+        ASSERT_EQ(sibling, double{0.3f});
+    });
+    // Parents beyond the bounds, which were narrowed since: what is spread is within.
+    spread_often(-1, 1, 0, 194, [](double child, double sibling) { ASSERT_LE(std::abs(child - sibling), 2); });
+}
+
 } // namespace
 } // namespace evod::evolution

@@ -328,6 +328,111 @@ TEST(Bounds, EveryGeneOutsideIsClampedAndCounted) {
     EXPECT_GT(counted, 50'000u); // nine in ten steps leave the bounds
 }
 
+/// Chromosomes with 20 free genes, which alone mutate, bounded by 0 and 1024. No mutation at all.
+Parameters twenty_free_genes() {
+    Parameters parameters;
+    parameters.mutation_chance = 0;
+    parameters.free_genes = 20;
+    parameters.free_gene_max = 1024;
+    parameters.mutate_group = GeneGroup::Free;
+    return parameters;
+}
+
+/// Calls `visit` with the free genes of each of 10,000 mutants of chromosomes whose free genes are start(random).
+template <class Start, class Visit>
+void free_mutants(const Parameters& parameters, const Start& start, std::uint64_t seed, const Visit& visit) {
+    const ValueMutation<> mutation{parameters};
+    for (std::uint32_t i = 0; i < 10'000; ++i) {
+        base::RandomStream random = stream_of(seed, i);
+        std::vector<float> genes(gene_count(parameters), 100);
+        const Genes free = Genes{genes}.subspan(body_gene_count);
+        std::ranges::generate(free, [&] { return start(random); });
+        const unsigned outside = mutation.apply(Genes{genes}, random);
+        visit(free, outside);
+    }
+}
+
+TEST(Creep, PolynomialStepsFollowTheirLaw) {
+    // Law: with d = step / (max − min), the cumulative probability of d < 0 is (1 + d)^(n + 1) / 2, cut off at the lower
+    // bound by the share that lies beyond, and likewise for d > 0. Chi-square over 20 equally likely cells, 19 degrees
+    // of freedom, for genes in the middle of their bounds and at a tenth of them.
+    for (const double at : {0.5, 0.1}) {
+        Parameters parameters = twenty_free_genes();
+        parameters.mutation_chance = 1;
+        parameters.creep = Creep::Polynomial;
+        parameters.mutation_spread_index = 3;
+        const auto start = static_cast<float>(1024 * at);
+        const double beyond = std::pow(1 - at, 4), beyond_above = std::pow(at, 4); // (1 − room)^(n + 1)
+        std::vector<std::uint64_t> cells(20);
+        free_mutants(
+            parameters, [&](base::RandomStream&) { return start; }, 218,
+            [&](std::span<const float> genes, unsigned outside) {
+                ASSERT_EQ(outside, 0u);
+                for (const float gene : genes) {
+                    const double d = double{gene} / 1024 - double{start} / 1024;
+                    const double below = d < 0 ? (std::pow(1 + d, 4) - beyond) / (1 - beyond) / 2
+                                               : 1 - (std::pow(1 - d, 4) - beyond_above) / (1 - beyond_above) / 2;
+                    ++cells.at(std::clamp(static_cast<int>(20 * below), 0, 19));
+                }
+            });
+        EXPECT_GT(support::p_value_of_equal_cells(cells), alpha) << at;
+    }
+}
+
+TEST(Bounds, ReflectingKeepsTheUniformLaw) {
+    // Law: genes that are uniform within their bounds stay so, whatever the symmetric step. Chi-square over 100 cells
+    // for each size of step, 99 degrees of freedom.
+    for (const double step : {100.0, 900.0}) {
+        Parameters parameters = twenty_free_genes();
+        parameters.mutation_chance = 1;
+        parameters.free_mutation_step = step;
+        parameters.out_of_bounds = OutOfBounds::Reflect;
+        std::vector<std::uint64_t> cells(100);
+        free_mutants(
+            parameters, [](base::RandomStream& random) { return static_cast<float>(random.uniform(0, 1024)); }, 219,
+            [&](std::span<const float> genes, unsigned) {
+                for (const float gene : genes) {
+                    ASSERT_TRUE(gene >= 0 && gene <= 1024);
+                    ++cells.at(std::min<std::size_t>(99, static_cast<std::size_t>(gene / 10.24f)));
+                }
+            });
+        EXPECT_GT(support::p_value_of_equal_cells(cells), alpha) << step;
+    }
+}
+
+TEST(Bounds, ReflectingMirrorsAtTheBound) {
+    Parameters parameters = twenty_free_genes();
+    parameters.out_of_bounds = OutOfBounds::Reflect;
+    const ValueMutation<> mutation{parameters};
+    std::vector<float> genes(body_gene_count + 20, 100);
+    genes[6] = -24;
+    genes[7] = 1034;
+    genes[8] = 3000;
+    std::vector<GeneChange> changes;
+    base::RandomStream random = stream_of(220);
+    EXPECT_EQ(mutation.apply(Genes{genes}, random, changes), 3u);
+    EXPECT_EQ(changes, (std::vector<GeneChange>{{6, ChangeKind::Reflect, -24, 24},
+                                                {7, ChangeKind::Reflect, 1034, 1014},
+                                                {8, ChangeKind::Reflect, 3000, 952}})); // 3000 − 2 · 1024
+    EXPECT_EQ(genes[8], 952);
+}
+
+TEST(Bounds, RedrawnGenesAreUniform) {
+    // Law: a gene that left its bounds is uniform within them. Chi-square over 100 cells, 99 degrees of freedom.
+    Parameters parameters = twenty_free_genes();
+    parameters.out_of_bounds = OutOfBounds::Redraw;
+    std::vector<std::uint64_t> cells(100);
+    free_mutants(
+        parameters, [](base::RandomStream&) { return 1025.0f; }, 221,
+        [&](std::span<const float> genes, unsigned outside) {
+            ASSERT_EQ(outside, 20u);
+            for (const float gene : genes) {
+                ++cells.at(std::min<std::size_t>(99, static_cast<std::size_t>(gene / 10.24f)));
+            }
+        });
+    EXPECT_GT(support::p_value_of_equal_cells(cells), alpha);
+}
+
 TEST(Bounds, NothingIsCountedIfNoGeneIsOutside) {
     mutants({}, {100, 100, 100, 100, 100, 100}, 1000, 208,
             [](const Values&, unsigned clamped) { ASSERT_EQ(clamped, 0u); });

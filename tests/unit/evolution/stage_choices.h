@@ -93,6 +93,13 @@ inline std::vector<StageChoice> stage_choices() {
     add("survivors=0.001", [](Parameters& parameters) { parameters.survivors = 0.001; });
     choices.push_back(slowest_choices());
     add("scale_chance=0.5", [](Parameters& parameters) { parameters.scale_chance = 0.5; });
+    for (const OutOfBounds way : {OutOfBounds::Reflect, OutOfBounds::Redraw}) {
+        add(way == OutOfBounds::Reflect ? "out_of_bounds=reflect" : "out_of_bounds=redraw",
+            [&](Parameters& parameters) {
+                parameters.out_of_bounds = way;
+                parameters.mutation_step = 200;
+            });
+    }
     return choices;
 }
 

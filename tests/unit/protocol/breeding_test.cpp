@@ -30,13 +30,16 @@ TEST(BreedingMessage, IsConvertedCompletely) {
                                       .second_genes = genes,
                                       .from_second = all,
                                       .second_share = 0.25,
+                                      .crossed_genes = genes,
                                       .crossed = true,
                                       .order = {{1, 0, 2, 3, 4, 5}},
                                       .changes = {{1, evolution::ChangeKind::Creep, 2, 3},
                                                   {1, evolution::ChangeKind::Reset, 2, 3},
                                                   {1, evolution::ChangeKind::Scale, 2, 3},
                                                   {1, evolution::ChangeKind::BitFlip, 2, 3},
-                                                  {1, evolution::ChangeKind::Clamp, 2, 3}},
+                                                  {1, evolution::ChangeKind::Clamp, 2, 3},
+                                                  {1, evolution::ChangeKind::Reflect, 2, 3},
+                                                  {1, evolution::ChangeKind::Redraw, 2, 3}},
                                       .genes = genes});
     }
     parameters::Parameters parameters;
@@ -61,7 +64,7 @@ TEST(BreedingMessage, IsConvertedCompletely) {
     for (const auto& mutation : message.descendants(0).mutations()) {
         kinds.insert(mutation.kind());
     }
-    EXPECT_EQ(kinds.size(), 5u);
+    EXPECT_EQ(kinds.size(), 7u);
     EXPECT_FALSE(kinds.contains(v1::MUTATION_KIND_UNSPECIFIED));
     std::set<std::string> parameter_names;
     for (const auto& assignment : message.parameters()) {

@@ -1,6 +1,7 @@
 // Captions: the sentence that explains the moment that the glass box shows. No DOM.
 import type {Contender} from "../core/protocol";
 import {breeding_texts} from "../texts/breeding";
+import {brings_back} from "./inheritance";
 import {type BreedingRecord, rank_of, slot_of} from "./record";
 import type {Moment} from "./stepper";
 
@@ -49,7 +50,7 @@ function breeding_caption(record: BreedingRecord, id: number): string {
         breeding_texts.child(
           first, descendant.second_parent ?? 0, descendant.second_share ?? 0, descendant.crossed === true) +
         (descendant.order_mutation ? breeding_texts.reordered(descendant.order_mutation.method ?? "") : "") +
-        breeding_texts.mutations(mutations.filter((mutation) => mutation.kind !== "MUTATION_KIND_CLAMP").length);
+        breeding_texts.mutations(mutations.filter((mutation) => !brings_back(mutation.kind)).length);
   }
 }
 

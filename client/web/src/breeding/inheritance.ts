@@ -6,7 +6,7 @@ import {breeding_texts} from "../texts/breeding";
 export interface GeneOrigin {
   value: number;
   from_second: boolean; // false: from the first parent, or blended from both parents
-  blended: boolean; // a weighted mean of the genes of both parents
+  blended: boolean; // made of the genes of both parents, by blend or simulated_binary crossover
   gene: number; // index of the gene in that parent
 }
 
@@ -73,6 +73,11 @@ export function inheritance_of(descendant: Descendant): Inheritance|null {
       continue;
     }
     const from_second = !alone && is_from_second(descendant, gene);
+    const spread = descendant.crossed_genes?.[gene];
+    if (spread !== undefined && spread !== (from_second ? second : first)[gene]) {
+      result.crossed.push({value: spread, from_second, blended: true, gene});
+      continue;
+    }
     result.crossed.push({value: from_second ? second[gene]! : first[gene]!, from_second, blended: false, gene});
     if (gene > 0 && from_second !== result.crossed[gene - 1]!.from_second) {
       result.cuts.push(gene);
@@ -108,6 +113,11 @@ export function inheritance_of(descendant: Descendant): Inheritance|null {
     result.changed[gene] = true;
   }
   return result;
+}
+
+/** Whether the change moved a gene that was outside its bounds. */
+export function brings_back(kind: MutationKind|undefined): boolean {
+  return kind === "MUTATION_KIND_CLAMP" || kind === "MUTATION_KIND_REFLECT" || kind === "MUTATION_KIND_REDRAW";
 }
 
 export function mutation_text(kind: MutationKind): string {

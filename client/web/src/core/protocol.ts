@@ -920,9 +920,11 @@ export type DescendantKind = "DESCENDANT_KIND_UNSPECIFIED"|"DESCENDANT_KIND_ELIT
 
 /** How a gene was changed.
  *  MUTATION_KIND_CLAMP: the value was outside its bounds and was set to the nearest bound
- *  MUTATION_KIND_SCALE: multiplied by a random factor */
+ *  MUTATION_KIND_SCALE: multiplied by a random factor
+ *  MUTATION_KIND_REFLECT: the value was outside its bounds and was mirrored at the bound
+ *  MUTATION_KIND_REDRAW: the value was outside its bounds and was drawn again, uniform within them */
 export type MutationKind = "MUTATION_KIND_UNSPECIFIED"|"MUTATION_KIND_CREEP"|"MUTATION_KIND_RESET"|
-  "MUTATION_KIND_BIT_FLIP"|"MUTATION_KIND_CLAMP"|"MUTATION_KIND_SCALE";
+  "MUTATION_KIND_BIT_FLIP"|"MUTATION_KIND_CLAMP"|"MUTATION_KIND_SCALE"|"MUTATION_KIND_REFLECT"|"MUTATION_KIND_REDRAW";
 
 /** RUN_TABLE_GENERATIONS: statistics: one row per generation and island
  *  RUN_TABLE_ORGANISMS: parents, genes and cause of death of each organism
@@ -1554,6 +1556,9 @@ export interface Descendant {
   second_share?: number;
   /** like from_second, for genes 32 to 63, 64 to 95, … */
   more_from_second?: number[];
+  /** Simulated binary crossover: the genes after the crossover; from_second states which parent each is near to.
+   *  Empty: the genes after the crossover follow from the fields above. */
+  crossed_genes?: number[];
 }
 
 /** A mutation that changed the order of the genes. */

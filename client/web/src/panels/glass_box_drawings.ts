@@ -3,6 +3,7 @@
 import {contender_text} from "../breeding/caption";
 import {type Comparison, pick_columns, rank_columns} from "../breeding/comparison";
 import {
+  brings_back,
   gene_blocks,
   type GeneOrigin,
   type Inheritance,
@@ -408,7 +409,7 @@ export function draw_family(descendant: Descendant, gene_names: readonly string[
             .map(
               (change) =>
                 h("div", {
-                  class: change.kind === "MUTATION_KIND_CLAMP" ? "gene-change clamped" : "gene-change",
+                  class: brings_back(change.kind) ? "gene-change clamped" : "gene-change",
                   title: glass_box_texts.mutation(delta_text(change.after - change.before), mutation_text(change.kind)),
                 },
                   h("span", {}, gene_text(change.before)),
