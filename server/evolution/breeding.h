@@ -8,6 +8,7 @@
 
 #include "server/base/assert.h"
 #include "server/evolution/crossover.h"
+#include "server/evolution/free_gene_operators.h"
 #include "server/evolution/mutation.h"
 #include "server/evolution/next_generation.h"
 #include "server/evolution/order_mutation.h"
@@ -64,13 +65,21 @@ Inheritance<extent> inheritance_of(const Parents& pair, const GeneMask<extent>& 
 /// Applies the mutations to a chromosome without recording them.
 struct WithoutRecord {
     template <std::size_t extent>
-    static void mutate_order(const OrderMutation& by, std::span<float, extent> genes, base::RandomStream& random) {
+    static void mutate_order(const OrderMutation& by, const FreeGeneOperators& listed, std::span<float, extent> genes,
+                             base::RandomStream& random) {
         by.apply(genes, random);
+        if constexpr (extent == std::dynamic_extent) {
+            listed.rearrange(by, genes, random);
+        }
     }
     template <std::size_t extent>
-    static unsigned mutate(const ValueMutation<extent>& by, std::span<float, extent> genes,
-                           base::RandomStream& random) {
-        return by.apply(genes, random);
+    static unsigned mutate(const ValueMutation<extent>& by, const FreeGeneOperators& listed,
+                           std::span<float, extent> genes, base::RandomStream& random) {
+        unsigned outside = by.apply(genes, random);
+        if constexpr (extent == std::dynamic_extent) {
+            outside += listed.mutate(genes, random, SetGene{genes});
+        }
+        return outside;
     }
     template <std::size_t extent>
     static unsigned clamp(std::span<float, extent> genes, const GeneBounds& bounds) {
@@ -93,7 +102,8 @@ class Descent {
         , order_mutation_{parameters}
         , mutation_{parameters}
         , bounds_{gene_bounds(parameters)}
-        , spread_index_{parameters.crossover_spread_index} {
+        , spread_index_{parameters.crossover_spread_index}
+        , listed_{parameters} {
         EVOD_ASSERT(present.rows() == gene_count(parameters));
     }
 
@@ -110,15 +120,21 @@ class Descent {
             return by.clamp(genes, bounds_);
         }
         base::RandomStream order{survivor_key_, place, 0}, mutation{survivor_key_, place, 1};
-        by.mutate_order(order_mutation_, genes, order);
-        return by.mutate(mutation_, genes, mutation);
+        by.mutate_order(order_mutation_, listed_, genes, order);
+        return by.mutate(mutation_, listed_, genes, mutation);
     }
 
     /// Draws the mixture of the children of a pair; `mixture` must be new. Returns false and does not change it if
     /// there is no crossover.
     bool draw_mixture(std::uint32_t pair_index, Mixture<extent>& mixture) const {
         base::RandomStream random{crossover_key_, pair_index};
-        return crossover_.draw(mixture, random);
+        if (!crossover_.draw(mixture, random)) {
+            return false;
+        }
+        if constexpr (extent == std::dynamic_extent) {
+            listed_.draw_slices(mixture, random);
+        }
+        return true;
     }
 
     /// Writes the genes of a child to `child`. `mixture` is that of the pair, whose mask is not read; `place` is the
@@ -128,8 +144,8 @@ class Descent {
                         std::span<float, extent> child, By&& by) const {
         cross(of, mixture, child);
         base::RandomStream order{order_mutation_key_, place}, mutation{mutation_key_, place};
-        by.mutate_order(order_mutation_, child, order);
-        return by.mutate(mutation_, child, mutation);
+        by.mutate_order(order_mutation_, listed_, child, order);
+        return by.mutate(mutation_, listed_, child, mutation);
     }
 
     /// Writes the genes that a child has after the crossover, before all mutations.
@@ -145,6 +161,9 @@ class Descent {
         } else {
             evolution::cross(first, second, of.from_second, child);
         }
+        if constexpr (extent == std::dynamic_extent) {
+            listed_.cross(first, second, of.from_second, mixture, child);
+        }
     }
 
   private:
@@ -155,6 +174,7 @@ class Descent {
     ValueMutation<extent> mutation_;
     GeneBounds bounds_;
     double spread_index_;
+    FreeGeneOperators listed_;
 };
 
 } // namespace evod::evolution

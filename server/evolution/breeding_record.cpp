@@ -103,16 +103,23 @@ std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t 
 struct WithRecord {
     Descendant& of;
 
-    void mutate_order(const OrderMutation& by, Genes genes, base::RandomStream& random) const {
+    void mutate_order(const OrderMutation& by, const FreeGeneOperators& listed, Genes genes,
+                      base::RandomStream& random) const {
+        const auto apply = [&](auto items, base::RandomStream& stream) {
+            const bool changed = by.apply(items, stream);
+            return listed.rearrange(by, items, stream) || changed;
+        };
         base::RandomStream same = random;
         std::vector<std::uint32_t> order(genes.size());
         std::iota(order.begin(), order.end(), 0u);
-        if (by.apply(genes, random) && by.apply(std::span{order}, same)) {
+        if (apply(genes, random) && apply(std::span{order}, same)) {
             of.order = std::move(order);
         }
     }
-    unsigned mutate(const ValueMutation<>& by, Genes genes, base::RandomStream& random) const {
-        return by.apply(genes, random, of.changes);
+    unsigned mutate(const ValueMutation<>& by, const FreeGeneOperators& listed, Genes genes,
+                    base::RandomStream& random) const {
+        const unsigned outside = by.apply(genes, random, of.changes);
+        return outside + listed.mutate(genes, random, RecordGene{genes, of.changes});
     }
     unsigned clamp(Genes genes, const GeneBounds& bounds) const { return evolution::clamp(genes, bounds, of.changes); }
 };
@@ -163,7 +170,7 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
             descendant.parents = inheritance.parents;
             descendant.from_second = inheritance.from_second;
             descendant.second_share = mixture.second_share;
-            if (mixture.spreads) {
+            if (mixture.spreads || (descendant.crossed && !parameters.listed_genes.empty())) {
                 descendant.crossed_genes.resize(child_genes.size());
                 descent.cross(inheritance, mixture, descendant.crossed_genes);
             }

@@ -50,8 +50,9 @@ struct BreedingRecord {
         Parents parents{};
         std::vector<float> first_genes, second_genes; // genes of the first and of the second parent
         GeneMask<> from_second{0};                    // the genes that come from the second parent
-        double second_share = 0;          // blend: the weight of the second parent in every gene; otherwise 0
-        std::vector<float> crossed_genes; // simulated_binary: the genes after the crossover; otherwise empty
+        double second_share = 0; // blend: the weight of the second parent in every gene; otherwise 0
+        std::vector<float>
+            crossed_genes; // simulated_binary, or genes with a list: after the crossover; otherwise empty
         bool crossed = false;
         // After an order mutation: element i is the index of the gene whose value gene i received.
         std::optional<std::vector<std::uint32_t>> order;

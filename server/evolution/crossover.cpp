@@ -152,6 +152,31 @@ template void blend(std::span<const float, body_gene_count>, std::span<const flo
                     std::span<float, body_gene_count>);
 template void blend(ConstGenes, ConstGenes, double, Genes);
 
+double spread_position(double near, double far, std::uint32_t word, double min, double max, double index) {
+    if ((word & is_spread) == 0 || near == far) {
+        return near;
+    }
+    const double uniform = ((word / 4) + 0.5) * 0x1p-30;
+    const double distance = std::abs(near - far), room = near < far ? near - min : max - near;
+    return (near + far) / 2 + (near - far) / 2 * spread_factor(uniform, room / distance, index);
+}
+
+void cross_order(ConstGenes near, ConstGenes far, Slice slice, Genes child) {
+    const auto count = static_cast<unsigned>(near.size());
+    std::vector<bool> taken(count);
+    for (unsigned place = slice.first; place <= slice.last; ++place) {
+        child[place] = near[place];
+        taken[static_cast<std::size_t>(near[place])] = true;
+    }
+    unsigned place = slice.last + 1;
+    for (unsigned i = 0; i < count; ++i) {
+        const float element = far[(slice.last + 1 + i) % count];
+        if (!taken[static_cast<std::size_t>(element)]) {
+            child[place++ % count] = element;
+        }
+    }
+}
+
 template <std::size_t extent>
 void spread(std::span<const float, extent> first, std::span<const float, extent> second,
             const GeneMask<extent>& from_second, const PerGene<std::uint32_t, extent>& words, const GeneBounds& bounds,
@@ -161,14 +186,9 @@ void spread(std::span<const float, extent> first, std::span<const float, extent>
                     other = from_second.contains(gene) ? first[gene] : second[gene];
         const double min = double{bounds.min[gene]}, max = double{bounds.max[gene]};
         const double near = std::clamp(double{same}, min, max), far = std::clamp(double{other}, min, max);
-        if ((words[gene] & is_spread) == 0 || near == far) {
-            child[gene] = same;
-            continue;
-        }
-        const double uniform = ((words[gene] / 4) + 0.5) * 0x1p-30;
-        const double distance = std::abs(near - far), room = near < far ? near - min : max - near;
-        const double half = (near - far) / 2 * spread_factor(uniform, room / distance, index);
-        child[gene] = std::clamp(static_cast<float>((near + far) / 2 + half), bounds.min[gene], bounds.max[gene]);
+        const double spread = spread_position(near, far, words[gene], min, max, index);
+        child[gene] =
+            spread == near ? same : std::clamp(static_cast<float>(spread), bounds.min[gene], bounds.max[gene]);
     }
 }
 template void spread(std::span<const float, body_gene_count>, std::span<const float, body_gene_count>,

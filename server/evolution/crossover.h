@@ -14,10 +14,13 @@
 #include "server/evolution/chromosome.h"
 #include "server/evolution/ga_parameters.h"
 #include "server/evolution/gene_mask.h"
+#include "server/evolution/order_mutation.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace evod::evolution {
@@ -32,6 +35,8 @@ struct Mixture {
     double second_share = 0;      // blend: the smaller of the two parents' weights, in (0, ½); other methods: 0
     // simulated_binary: the word of each gene, of which spread() makes the values of both children
     std::optional<PerGene<std::uint32_t, extent>> spreads;
+    // order crossover: the slice of each permutation in the list of free genes; empty without crossover
+    std::conditional_t<extent == std::dynamic_extent, std::vector<Slice>, std::array<Slice, 0>> slices;
 };
 
 template <std::size_t extent = std::dynamic_extent>
@@ -85,6 +90,14 @@ void cross(std::span<const float, extent> first, std::span<const float, extent> 
 template <std::size_t extent>
 void blend(std::span<const float, extent> first, std::span<const float, extent> second, double second_share,
            std::span<float, extent> child);
+
+/// Returns the position of a child's gene under simulated binary crossover, as spread() computes it. `near` is the gene of
+/// the parent that the child takes after, within the bounds min and max.
+double spread_position(double near, double far, std::uint32_t word, double min, double max, double index);
+
+/// Order crossover of two permutations of 0 … n − 1: `child` gets the slice of `near`, and then, from behind the slice
+/// and around the end, the other elements in the order in which `far` has them from there on.
+void cross_order(ConstGenes near, ConstGenes far, Slice slice, Genes child);
 
 /// Gives every gene of `child` the value that simulated binary crossover makes of the parents' genes. The child takes
 /// gene g after the second parent if `from_second` contains it, otherwise after the first one. A gene that is not

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "server/base/parameter.h"
+#include "server/evolution/free_genes.h"
 
 namespace evod::evolution {
 
@@ -20,6 +21,7 @@ enum class Topology { None, Ring, FullyConnected, Random };
 enum class Emigrants { Best, Random };
 enum class Replaced { Worst, Random };
 enum class Controller { Rules, Network };
+enum class FreeGeneStart { Uniform, LatinHypercube };
 enum class Locomotion { Newtonian, Kinematic };
 
 } // namespace evod::evolution
@@ -38,6 +40,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Topology, "none", "ring", "fully_connected", 
 EVOD_CHOICE_NAMES(evod::evolution::Emigrants, "best", "random")
 EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
 EVOD_CHOICE_NAMES(evod::evolution::Controller, "rules", "network")
+EVOD_CHOICE_NAMES(evod::evolution::FreeGeneStart, "uniform", "latin_hypercube")
 EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
 
 // clang-format off
@@ -71,7 +74,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     REAL(mutation_chance, 0.15, 0, 1, "chance", NextTick, "Chance per gene of a creep mutation.")                      \
     REAL(mutation_step, 15, 0, 1000, "gene units", NextTick, "Size of a creep mutation of a gene of the body: its largest step if creep is uniform, its standard deviation if creep is gaussian.") \
     REAL(brain_mutation_step, 0.5, 0, 1000, "gene units", NextTick, "Size of a creep mutation of a weight of the brain, as for mutation_step.") \
-    REAL(free_mutation_step, 0.1, 0, 1e6, "gene units", NextTick, "Size of a creep mutation of a free gene, as for mutation_step.") \
+    REAL(free_mutation_step, 0.1, 0, 1e6, "gene units", NextTick, "Size of a creep mutation of a free gene, as for mutation_step; of a gene of a list, as a share of its range.") \
     REAL(mutation_spread_index, 20, 0, 1000, "", NextTick, "Index of the distribution of polynomial creep: the larger it is, the smaller the steps.") \
     REAL(reset_chance, 0, 0, 1, "chance", NextTick, "Chance per gene of a reset to a uniform random value within the gene's bounds; 0 means off.") \
     REAL(scale_chance, 0, 0, 1, "chance", NextTick, "Chance per chromosome that one random gene is multiplied by a random factor; 0 means off.") \
@@ -94,9 +97,10 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     REAL(food_radius_max, 200, 0, 10'000, "gene units", NextTick, "Upper bound of the gene food_radius.")              \
     REAL(poison_radius_min, 20, 0, 10'000, "gene units", NextTick, "Lower bound of the gene poison_radius.")           \
     REAL(poison_radius_max, 200, 0, 10'000, "gene units", NextTick, "Upper bound of the gene poison_radius.")          \
-    COUNT(free_genes, 0, 0, 1000, "genes", Reset, "Genes beyond those of the body, which the simulation does not read; for a fitness function outside evod. Their names are free0, free1, and so on.") \
-    REAL(free_gene_min, 0, -1e6, 1e6, "gene units", NextTick, "Lower bound of every free gene. In the first generation, free genes are uniform between their bounds.") \
-    REAL(free_gene_max, 1, -1e6, 1e6, "gene units", NextTick, "Upper bound of every free gene.") \
+    COUNT(free_genes, 0, 0, 1000, "genes", Reset, "Genes beyond those of the body, which the simulation does not read; for a fitness function outside evod. Their names are free0, free1, and so on, unless a list describes them.") \
+    REAL(free_gene_min, 0, -1e6, 1e6, "gene units", NextTick, "Lower bound of every free gene without a list. In the first generation, free genes are uniform between their bounds.") \
+    REAL(free_gene_max, 1, -1e6, 1e6, "gene units", NextTick, "Upper bound of every free gene without a list.") \
+    CHOICE(free_gene_start, FreeGeneStart, Uniform, Reset, "Values of free genes in the first generation: uniform, every value is equally likely; latin_hypercube, the values of each gene are spread evenly over the organisms of an island.") \
     CHOICE(controller, Controller, Rules, Reset, "What steers organisms: rules, the fixed rules of behaviour; network, a neural network whose weights are genes.") \
     FLAG(sense_food, true, Reset, "Whether networks have inputs for the nearest food that is seen: its bearing (the angle from the heading, −1 to 1 for half a turn) and its proximity (1 − distance / food_radius; 0 if none is seen).") \
     FLAG(sense_poison, true, Reset, "Whether networks have inputs for the nearest poison that is seen, as for sense_food.") \
@@ -137,6 +141,10 @@ using base::count_max;
 /// bound.
 struct Parameters {
     EVOD_EVOLUTION_PARAMETERS(EVOD_NO_FIELD, EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
+
+    /// The list of the free genes, which is not in the registry; empty, or of `free_genes` genes. It takes effect at a
+    /// reset.
+    FreeGenes listed_genes{};
 };
 
 } // namespace evod::evolution

@@ -24,6 +24,14 @@ GeneRange genes_of(GeneGroup group, const Parameters& parameters) {
     return {0, body_gene_count + brain + parameters.free_genes};
 }
 
+GeneRange unlisted_genes_of(GeneGroup group, const Parameters& parameters) {
+    GeneRange genes = genes_of(group, parameters);
+    if (!parameters.listed_genes.empty() && (group == GeneGroup::All || group == GeneGroup::Free)) {
+        genes.count -= parameters.free_genes;
+    }
+    return genes;
+}
+
 GeneBounds gene_bounds(const Parameters& parameters) {
     const double min[body_gene_count] = {parameters.normal_speed_min, parameters.impulse_min,
                                          parameters.body_size_min,    parameters.base_health_min,
@@ -43,7 +51,14 @@ GeneBounds gene_bounds(const Parameters& parameters) {
     }
     const double weight_limit = brain_genes(parameters).limit;
     set(genes_of(GeneGroup::Brain, parameters), -weight_limit, weight_limit);
-    set(genes_of(GeneGroup::Free, parameters), parameters.free_gene_min, parameters.free_gene_max);
+    const GeneRange free = genes_of(GeneGroup::Free, parameters);
+    set(free, parameters.free_gene_min, parameters.free_gene_max);
+    unsigned first = free.first;
+    for (const FreeGene& gene : parameters.listed_genes.list()) {
+        const GeneValues values{gene};
+        set({first, gene.count}, double{values.min()}, double{values.max()});
+        first += gene.count;
+    }
     return bounds;
 }
 
@@ -55,10 +70,16 @@ GeneLayout gene_layout(const Parameters& parameters) {
         layout.names.push_back(weight);
         layout.groups.push_back(GeneGroup::Brain);
     }
-    for (std::uint32_t i = 0; i < parameters.free_genes; ++i) {
-        layout.names.push_back("free" + std::to_string(i));
-        layout.groups.push_back(GeneGroup::Free);
+    for (const FreeGene& gene : parameters.listed_genes.list()) {
+        for (std::uint32_t i = 0; i < gene.count; ++i) {
+            layout.names.push_back(gene.kind == FreeGene::Kind::Permutation ? gene.name + std::to_string(i)
+                                                                            : gene.name);
+        }
     }
+    for (std::uint32_t i = 0; i < parameters.free_genes && parameters.listed_genes.empty(); ++i) {
+        layout.names.push_back("free" + std::to_string(i));
+    }
+    layout.groups.resize(layout.names.size(), GeneGroup::Free);
     return layout;
 }
 

@@ -35,6 +35,9 @@ unsigned gene_count(const Parameters& parameters);
 /// The genes of a group; GeneGroup::All is the whole chromosome.
 GeneRange genes_of(GeneGroup group, const Parameters& parameters);
 
+/// The genes of a group without the free genes, if these have a list (free_genes.h).
+GeneRange unlisted_genes_of(GeneGroup group, const Parameters& parameters);
+
 /// The allowed range of each gene, both ends included; shape (gene_count).
 struct GeneBounds {
     Eigen::ArrayXf min, max;

@@ -80,30 +80,6 @@ double draw_normal(base::RandomStream& random) {
     return ziggurat.draw(random);
 }
 
-/// Returns value + d · (max − min) for a d that follows the law of polynomial creep.
-double polynomial_creep(double value, double min, double max, double index, base::RandomStream& random) {
-    if (!(min < max)) {
-        return min;
-    }
-    const double within = std::clamp(value, min, max);
-    const double uniform = random.uniform(), side = std::min(uniform, 1 - uniform);
-    const double room = (uniform < 0.5 ? within - min : max - within) / (max - min);
-    // side is uniform in [0, ½]; the cumulative probability of a step that goes no further than the bound.
-    const double kept = base::pow(1 - room, index + 1);
-    const double step = 1 - base::pow(2 * side + (1 - 2 * side) * kept, 1 / (index + 1));
-    return within + (uniform < 0.5 ? -step : step) * (max - min);
-}
-
-/// Returns the mirror image of a value at the bounds, repeatedly until it is within them.
-double reflected(double value, double min, double max) {
-    const double width = max - min;
-    if (!(width > 0)) {
-        return min;
-    }
-    const double beyond = std::abs(std::fmod(value - min, 2 * width)); // also if value < min: mirrored at min
-    return min + std::min(beyond, 2 * width - beyond);
-}
-
 // Up to this probability of a flip it is cheaper to draw the distances between flipped bits than to draw for each bit.
 constexpr double rare_flip_chance_max = 0.125;
 
@@ -118,13 +94,33 @@ void for_each_gene(std::uint32_t mask, const Change& change) {
     }
 }
 
-/// Sets a gene without recording it.
-struct SetGene {
-    Genes genes;
-    void operator()(unsigned gene, ChangeKind, float value) const { genes[gene] = value; }
-};
-
 } // namespace
+
+double creep_unit(Creep creep, base::RandomStream& random) {
+    return creep == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
+}
+
+double polynomial_creep(double value, double min, double max, double index, base::RandomStream& random) {
+    if (!(min < max)) {
+        return min;
+    }
+    const double within = std::clamp(value, min, max);
+    const double uniform = random.uniform(), side = std::min(uniform, 1 - uniform);
+    const double room = (uniform < 0.5 ? within - min : max - within) / (max - min);
+    // side is uniform in [0, ½]; the cumulative probability of a step that goes no further than the bound.
+    const double kept = base::pow(1 - room, index + 1);
+    const double step = 1 - base::pow(2 * side + (1 - 2 * side) * kept, 1 / (index + 1));
+    return within + (uniform < 0.5 ? -step : step) * (max - min);
+}
+
+double reflected(double value, double min, double max) {
+    const double width = max - min;
+    if (!(width > 0)) {
+        return min;
+    }
+    const double beyond = std::abs(std::fmod(value - min, 2 * width)); // also if value < min: mirrored at min
+    return min + std::min(beyond, 2 * width - beyond);
+}
 
 std::uint32_t BinaryView::to_code(float value) const {
     EVOD_ASSERT(value >= min);
@@ -144,7 +140,7 @@ float BinaryView::to_value(std::uint32_t code) const {
 
 template <std::size_t extent>
 ValueMutation<extent>::ValueMutation(const Parameters& parameters)
-    : range_{genes_of(parameters.mutate_group, parameters)}
+    : range_{unlisted_genes_of(parameters.mutate_group, parameters)}
     , bounds_{gene_bounds(parameters)}
     , creep_{parameters.creep}
     , creep_chance_{parameters.mutation_chance}
@@ -193,13 +189,7 @@ unsigned ValueMutation<extent>::apply(std::span<float, extent> genes, base::Rand
 template <std::size_t extent>
 unsigned ValueMutation<extent>::apply(std::span<float, extent> genes, base::RandomStream& random,
                                       std::vector<GeneChange>& changes) const requires(extent == std::dynamic_extent) {
-    return mutate(
-        genes, random,
-        [&](unsigned gene, ChangeKind kind, float value) {
-            changes.push_back({gene, kind, genes[gene], value});
-            genes[gene] = value;
-        },
-        [&] { return clamp(genes, bounds_, changes); });
+    return mutate(genes, random, RecordGene{genes, changes}, [&] { return clamp(genes, bounds_, changes); });
 }
 
 template <std::size_t extent>
@@ -223,7 +213,7 @@ unsigned ValueMutation<extent>::mutate(std::span<const float, extent> genes, bas
             change(gene, ChangeKind::Reset, static_cast<float>(random.uniform(bounds_.min[gene], bounds_.max[gene])));
         });
     }
-    if (!scale_chance_.is_never()) {
+    if (!scale_chance_.is_never() && range().count > 0) {
         if (const std::optional<GeneChange> scaled = draw_scale(genes, random)) {
             change(scaled->gene, scaled->kind, scaled->after);
         }
@@ -243,8 +233,7 @@ float ValueMutation<extent>::crept(float value, unsigned gene, base::RandomStrea
         return static_cast<float>(polynomial_creep(double{value}, double{bounds_.min[gene]}, double{bounds_.max[gene]},
                                                    spread_index_, random));
     }
-    const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
-    return static_cast<float>(value + steps_[gene] * unit);
+    return static_cast<float>(value + steps_[gene] * creep_unit(creep_, random));
 }
 
 template <std::size_t extent>

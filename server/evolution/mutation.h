@@ -31,6 +31,13 @@ struct BinaryView {
     float to_value(std::uint32_t code) const;
 };
 
+/// Draws the factor of a step: uniform in (−1, 1), or standard normal. `creep` is not Polynomial.
+double creep_unit(Creep creep, base::RandomStream& random);
+/// Returns a value that polynomial creep gives to a gene; ValueMutation::apply() has the law.
+double polynomial_creep(double value, double min, double max, double index, base::RandomStream& random);
+/// Returns the mirror image of a value at its bounds, mirrored repeatedly until it is within them.
+double reflected(double value, double min, double max);
+
 enum class ChangeKind { Creep, Reset, Scale, BitFlip, Clamp, Reflect, Redraw };
 
 /// One change of a gene.
@@ -39,6 +46,21 @@ struct GeneChange {
     ChangeKind kind = ChangeKind::Creep;
     float before = 0, after = 0;
     friend bool operator==(const GeneChange&, const GeneChange&) = default;
+};
+
+/// Sets a gene without recording it.
+struct SetGene {
+    Genes genes;
+    void operator()(unsigned gene, ChangeKind, float value) const { genes[gene] = value; }
+};
+/// Sets a gene and records the change.
+struct RecordGene {
+    Genes genes;
+    std::vector<GeneChange>& changes;
+    void operator()(unsigned gene, ChangeKind kind, float value) const {
+        changes.push_back({gene, kind, genes[gene], value});
+        genes[gene] = value;
+    }
 };
 
 /// Works like clamp() in chromosome.h, and also appends the genes that it moved to `changes`.

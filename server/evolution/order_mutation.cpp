@@ -6,17 +6,6 @@
 namespace evod::evolution {
 namespace {
 
-struct Slice {
-    unsigned first, last; // first < last, both inclusive
-};
-
-Slice draw_slice(unsigned gene_count, base::RandomStream& random) {
-    const unsigned a = random.below(gene_count);
-    const unsigned other = random.below(gene_count - 1);
-    const unsigned b = other < a ? other : other + 1;
-    return {std::min(a, b), std::max(a, b)};
-}
-
 template <class T, std::size_t extent>
 void swap_pair(std::span<T, extent> genes, base::RandomStream& random) {
     const Slice pair = draw_slice(static_cast<unsigned>(genes.size()), random);
@@ -25,14 +14,25 @@ void swap_pair(std::span<T, extent> genes, base::RandomStream& random) {
 
 } // namespace
 
+Slice draw_slice(unsigned gene_count, base::RandomStream& random) {
+    const unsigned a = random.below(gene_count);
+    const unsigned other = random.below(gene_count - 1);
+    const unsigned b = other < a ? other : other + 1;
+    return {std::min(a, b), std::max(a, b)};
+}
+
 OrderMutation::OrderMutation(const Parameters& parameters)
     : method_{parameters.rearranging}
     , chance_{parameters.rearrange_chance}
-    , range_{genes_of(parameters.mutate_group, parameters)} {}
+    , range_{unlisted_genes_of(parameters.mutate_group, parameters)} {}
 
 template <class T, std::size_t extent>
 bool OrderMutation::apply(std::span<T, extent> items, base::RandomStream& random) const {
-    const std::span<T, extent> genes = part_of(items, range_);
+    return apply_to(part_of(items, range_), random);
+}
+
+template <class T, std::size_t extent>
+bool OrderMutation::apply_to(std::span<T, extent> genes, base::RandomStream& random) const {
     if (is_off() || genes.size() < 2 || !chance_.draw(random)) {
         return false;
     }
@@ -64,5 +64,7 @@ bool OrderMutation::apply(std::span<T, extent> items, base::RandomStream& random
 template bool OrderMutation::apply(std::span<float, body_gene_count>, base::RandomStream&) const;
 template bool OrderMutation::apply(Genes, base::RandomStream&) const;
 template bool OrderMutation::apply(std::span<std::uint32_t>, base::RandomStream&) const;
+template bool OrderMutation::apply_to(Genes, base::RandomStream&) const;
+template bool OrderMutation::apply_to(std::span<std::uint32_t>, base::RandomStream&) const;
 
 } // namespace evod::evolution

@@ -14,6 +14,13 @@
 
 namespace evod::evolution {
 
+/// Two different genes and those between them.
+struct Slice {
+    unsigned first, last; // first < last, both included
+};
+/// Draws two of `gene_count` >= 2 genes; every pair is equally likely.
+Slice draw_slice(unsigned gene_count, base::RandomStream& random);
+
 class OrderMutation {
   public:
     explicit OrderMutation(const Parameters& parameters);
@@ -33,6 +40,10 @@ class OrderMutation {
     /// returns  whether the operation was applied (probability rearrange_chance).
     template <class T, std::size_t extent>
     bool apply(std::span<T, extent> items, base::RandomStream& random) const;
+
+    /// Mutates all of these items, with probability rearrange_chance.
+    template <class T, std::size_t extent>
+    bool apply_to(std::span<T, extent> items, base::RandomStream& random) const;
 
     bool is_off() const { return method_ == OrderMutationMethod::None || chance_.is_never(); }
 
