@@ -6,6 +6,12 @@
 #include <cmath>
 
 namespace evod::evolution {
+FreeGenes::FreeGenes(std::vector<FreeGene> list)
+    : list_{list.empty() ? nullptr : std::make_shared<const std::vector<FreeGene>>(std::move(list))} {}
+FreeGenes::FreeGenes(const FreeGenes& other) = default;
+FreeGenes& FreeGenes::operator=(const FreeGenes& other) = default;
+FreeGenes::~FreeGenes() = default;
+
 const std::vector<FreeGene>& FreeGenes::list() const {
     static const std::vector<FreeGene> none;
     return list_ == nullptr ? none : *list_;

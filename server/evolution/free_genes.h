@@ -35,8 +35,11 @@ struct FreeGene {
 class FreeGenes {
   public:
     FreeGenes() = default;
-    explicit FreeGenes(std::vector<FreeGene> list)
-        : list_{list.empty() ? nullptr : std::make_shared<const std::vector<FreeGene>>(std::move(list))} {}
+    explicit FreeGenes(std::vector<FreeGene> list);
+    // Not inline: GCC 12 would warn of uninitialised memory wherever parameters are destroyed.
+    FreeGenes(const FreeGenes& other);
+    FreeGenes& operator=(const FreeGenes& other);
+    ~FreeGenes();
 
     bool empty() const { return list_ == nullptr; }
     const std::vector<FreeGene>& list() const;

@@ -1,5 +1,7 @@
 #include "server/parameters/experiment.h"
 
+#include "server/parameters/gene_list.h"
+
 #include <algorithm>
 #include <charconv>
 #include <map>
@@ -180,7 +182,9 @@ class ExperimentReader {
                 assignments_.push_back({"reference_population", population->value});
             }
         }
-        const base::Result<Parameters> parameters = assign({}, assignments_);
+        Parameters with_list;
+        with_list.listed_genes = listed_genes_;
+        const base::Result<Parameters> parameters = assign(with_list, assignments_);
         if (!parameters) {
             add_violations(parameters.error());
         }
@@ -220,7 +224,10 @@ class ExperimentReader {
 
     void read_parameter(const JsonMember& member) {
         names_reference_ |= member.name == "reference_population";
-        if (member.value.is_object()) {
+        if (member.name == "free_genes" && member.value.is_array()) {
+            listed_genes_ = read_gene_list(member.value, "free_genes", violations_);
+            assignments_.push_back({"free_genes", ParameterValue{listed_genes_.gene_count()}});
+        } else if (member.value.is_object()) {
             if (auto first = schedule_.read(member, violations_)) {
                 assignments_.push_back({member.name, *std::move(first)});
             }
@@ -247,6 +254,7 @@ class ExperimentReader {
     Experiment experiment_;
     ScheduleReader schedule_;
     std::vector<Assignment> assignments_;
+    evolution::FreeGenes listed_genes_;
     std::vector<Violation> violations_;
     bool names_reference_ = false;
 };
@@ -355,7 +363,11 @@ std::string to_experiment_text(const Parameters& parameters, Written written, co
             continue;
         }
         text += text.size() > 1 ? ",\n  " : "\n  ";
-        text += "\"" + std::string{description.name} + "\": " + (scheduled.empty() ? json_text(value) : scheduled);
+        const bool listed = description.name == "free_genes" && !parameters.listed_genes.empty();
+        text += "\"" + std::string{description.name} + "\": " +
+                (listed              ? to_json_text(parameters.listed_genes)
+                 : scheduled.empty() ? json_text(value)
+                                     : scheduled);
     }
     return text + (text.size() > 1 ? "\n}\n" : "}\n");
 }

@@ -3,6 +3,8 @@
 // A parameter that can change while a world runs may have an object of values by generation instead of one value:
 // "mutation_chance": {"1": 0.2, "30": 0.05}. Each value holds from the first tick of its generation. Before the first
 // listed generation the parameter has its default value.
+//
+// "free_genes" is a number, or a list of genes (gene_list.h).
 #pragma once
 
 #include "server/base/random.h"

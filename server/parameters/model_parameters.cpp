@@ -403,6 +403,10 @@ void check_totals(const Parameters& p, Faults& faults) {
                       std::to_string(static_cast<std::uint64_t>(organisms)) + " organisms with a total of " +
                           std::to_string(genes) + " genes");
     }
+    if (const std::uint32_t listed = p.listed_genes.gene_count(); listed > 0 && p.free_genes != listed) {
+        faults.refuse("free_genes", std::to_string(listed) + ", the number of genes in the list of the free genes",
+                      std::to_string(p.free_genes));
+    }
     if (evolution::genes_of(p.mutate_group, p).count == 0) {
         faults.refuse("mutate_group",
                       "a group with genes: " + groups_with_genes(p) + "; their number changes at a reset",
@@ -470,6 +474,9 @@ Parameters taking_effect(const Parameters& active, const RequestedParameters& re
             description.copy(requested.values, result);
         }
     }
+    if (reached == base::Effect::Reset) {
+        result.listed_genes = requested.values.listed_genes;
+    }
     return result;
 }
 
@@ -490,7 +497,7 @@ std::vector<const ParameterDescription*> parameters_that_differ(const Parameters
 }
 
 bool operator==(const Parameters& a, const Parameters& b) {
-    return parameters_that_differ(a, b).empty();
+    return parameters_that_differ(a, b).empty() && a.listed_genes == b.listed_genes;
 }
 
 } // namespace evod::parameters

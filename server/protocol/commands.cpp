@@ -3,6 +3,7 @@
 #include "proto/text/number_text.h"
 #include "server/protocol/entities.h"
 #include "server/protocol/experiments.h"
+#include "server/protocol/gene_list.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
 #include "server/protocol/ratings.h"
@@ -83,6 +84,9 @@ simulation::Command command_of(const v1::ResetWorld& request, const Draws& draws
     simulation::ResetWorld command{.world = lookup_name(request.world()), .seed = {}, .run_id = draws.run_id};
     if (request.has_seed()) {
         command.seed = base::Seed{request.seed()};
+    }
+    if (request.has_free_genes()) {
+        command.listed_genes = to_gene_list(request.free_genes(), "reset_world.free_genes", violations);
     }
     return command;
 }

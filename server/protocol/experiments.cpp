@@ -1,5 +1,6 @@
 #include "server/protocol/experiments.h"
 
+#include "server/protocol/gene_list.h"
 #include "server/protocol/parameters.h"
 
 #include <string>
@@ -65,6 +66,11 @@ parameters::Experiment experiment_of(const v1::CreateWorld& request, Violations&
         experiment = experiment_of_file(request, found);
     }
     const auto assignments = to_assignments(request.parameters(), prefix, found);
+    if (request.has_free_genes()) {
+        experiment.parameters.listed_genes =
+            to_gene_list(request.free_genes(), std::string{prefix} + "free_genes", found);
+        experiment.parameters.free_genes = experiment.parameters.listed_genes.gene_count();
+    }
     if (found.empty()) {
         change(experiment, assignments, found);
     }

@@ -2,6 +2,7 @@
 
 #include "server/base/assert.h"
 #include "server/protocol/event_text.h"
+#include "server/protocol/gene_list.h"
 #include "server/protocol/public_text.h"
 #include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
@@ -114,6 +115,9 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     for (std::size_t gene = 0; gene < layout.names.size(); ++gene) {
         to.add_gene_names(layout.names[gene]);
         to.add_gene_groups(to_proto(layout.groups[gene]));
+    }
+    if (const auto& listed = world.parameters().active.listed_genes; !listed.empty()) {
+        to_proto(listed, *to.mutable_free_genes());
     }
     if (entry.replay) {
         v1::Replay& replay = *to.mutable_replay();

@@ -89,10 +89,16 @@ bool are_possible(const evolution::GeneMatrix& genes, parameters::Parameters par
     if (genes.cols() != static_cast<Eigen::Index>(parameters.population_size)) {
         return false;
     }
-    constexpr float greatest = 1e6f; // no parameter allows a gene beyond it
+    constexpr float greatest = 1e12f; // no parameter and no list of free genes allows a gene beyond it
     if (!(genes.array().abs() <= greatest).all() || !(genes.topRows(evolution::body_gene_count).array() >= 0).all() ||
         !(genes.row(evolution::BodySize).array() > 0).all()) { // a NaN fails each comparison
         return false;
+    }
+    const evolution::FreeGeneOperators listed{parameters};
+    for (std::uint32_t organism = 0; organism < genes.cols() && !listed.empty(); ++organism) {
+        if (listed.first_fault(evolution::column(genes, organism))) {
+            return false;
+        }
     }
     const auto widest = static_cast<double>(genes.row(evolution::BodySize).maxCoeff());
     parameters.body_size_max = std::max(parameters.body_size_max, widest);

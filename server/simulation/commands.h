@@ -48,6 +48,7 @@ struct ResetWorld {
     std::string world;
     std::optional<base::Seed> seed; // nullopt: the same seed as before
     RunId run_id;
+    std::optional<evolution::FreeGenes> listed_genes = {}; // valid; nullopt: the same list as before
 };
 struct Run {
     std::string world;

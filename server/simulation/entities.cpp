@@ -213,6 +213,7 @@ Result<void> check(const World& world, const PlaceEntities& command) {
     }
     const parameters::Parameters& parameters = world.parameters().active;
     const evolution::GeneLayout layout = evolution::gene_layout(parameters);
+    const evolution::FreeGeneOperators listed{parameters};
     Violations violations;
     PlaceCheck places{island, command.organisms.size()};
     for (std::size_t i = 0; i < command.items.size(); ++i) {
@@ -223,7 +224,7 @@ Result<void> check(const World& world, const PlaceEntities& command) {
         const PlaceEntities::Organism& organism = command.organisms[i];
         const std::string name = entry("place.organisms", i);
         const std::size_t faults = violations.size();
-        add_gene_faults(organism.genes, layout, name, violations);
+        add_gene_faults(organism.genes, layout, listed, name, violations);
         if (violations.size() > faults) {
             continue; // without valid genes, the radius is unknown
         }

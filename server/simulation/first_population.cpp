@@ -16,7 +16,7 @@ std::string bound_parameters(const evolution::GeneLayout& layout, unsigned gene)
     case evolution::GeneGroup::Brain:
         return "brain_weight_limit";
     case evolution::GeneGroup::Free:
-        return "free_gene_min, free_gene_max";
+        return "free_gene_min, free_gene_max, or its entry in the list";
     default:
         return layout.names[gene] + "_min, " + layout.names[gene] + "_max";
     }
@@ -58,6 +58,7 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
                           counted(population->size(), "island")});
     }
     const evolution::GeneLayout layout = evolution::gene_layout(parameters);
+    const evolution::FreeGeneOperators listed{parameters};
     for (std::size_t island = 0; island < population->size(); ++island) {
         const evolution::GeneMatrix& genes = (*population)[island];
         const std::string name = field + "[" + std::to_string(island) + "]";
@@ -66,15 +67,17 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
                               counted(static_cast<std::size_t>(genes.cols()), "organism")});
         }
         for (std::uint32_t organism = 0; organism < genes.cols() && faults.size() < faults_max; ++organism) {
-            add_gene_faults(evolution::column(genes, organism), layout,
+            add_gene_faults(evolution::column(genes, organism), layout, listed,
                             name + ".organism[" + std::to_string(organism) + "]", faults);
         }
     }
     return faults;
 }
 
-void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& layout, const std::string& organism,
+void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& layout,
+                     const evolution::FreeGeneOperators& listed, const std::string& organism,
                      std::vector<base::Violation>& faults) {
+    const std::size_t before = faults.size();
     if (genes.size() != layout.names.size()) {
         faults.push_back(
             {organism + ".genes", counted(layout.names.size(), "number"), counted(genes.size(), "number")});
@@ -90,6 +93,13 @@ void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& l
                               parameters::to_text(parameters::ParameterValue{double{max}}) + " (" +
                               bound_parameters(layout, gene) + ")",
                           parameters::to_text(parameters::ParameterValue{double{value}})});
+    }
+    if (const auto gene = faults.size() == before ? listed.first_fault(genes) : std::nullopt) {
+        faults.push_back(
+            {organism + "." + layout.names[*gene],
+             "a value that the list of the free genes allows: on a step of a number, the index of a choice, "
+             "each element of a permutation once",
+             parameters::to_text(parameters::ParameterValue{double{genes[*gene]}})});
     }
 }
 

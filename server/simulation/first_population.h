@@ -3,6 +3,7 @@
 
 #include "server/base/result.h"
 #include "server/evolution/chromosome.h"
+#include "server/evolution/free_gene_operators.h"
 #include "server/parameters/model_parameters.h"
 
 #include <memory>
@@ -39,7 +40,8 @@ std::optional<base::Violation> other_gene(std::span<const std::string> gene_name
 
 /// Adds a violation for every gene outside its bounds, until there are faults_max; the field of a gene is then
 /// "`organism`.body_size". A wrong number of genes is one violation of the field "`organism`.genes".
-void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& layout, const std::string& organism,
+void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& layout,
+                     const evolution::FreeGeneOperators& listed, const std::string& organism,
                      std::vector<base::Violation>& faults);
 
 } // namespace evod::simulation

@@ -375,7 +375,7 @@ Result<Construction> Laboratory::construction(const ResetWorld& command) const {
         return *refused;
     }
     const World& world = (*found)->world;
-    const Result<parameters::Parameters> beginning = world.beginning();
+    const Result<parameters::Parameters> beginning = world.beginning(command.listed_genes);
     if (!beginning) {
         return Refusal{
             .code = RefusalCode::FailedPrecondition,
@@ -392,11 +392,12 @@ Result<Construction> Laboratory::construction(const ResetWorld& command) const {
             .violations = std::move(faults),
             .reason = base::Reason::ResetImpossible};
     }
-    return Construction{.construct = [&world, seed = command.seed.value_or(world.seed()),
-                                      maker = maker_](base::Executor&) { return world.restarted(seed, maker); },
-                        .genes = genes_of(*beginning),
-                        .reads_world = true,
-                        .is_shared = maker_ != nullptr};
+    return Construction{
+        .construct = [&world, seed = command.seed.value_or(world.seed()), listed_genes = command.listed_genes,
+                      maker = maker_](base::Executor&) { return world.restarted(seed, listed_genes, maker); },
+        .genes = genes_of(*beginning),
+        .reads_world = true,
+        .is_shared = maker_ != nullptr};
 }
 
 Result<Applied> Laboratory::adopt(const ResetWorld& command, World world) {

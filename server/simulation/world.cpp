@@ -93,12 +93,18 @@ void World::become_fork() {
     }
 }
 
-base::Result<parameters::Parameters> World::beginning() const {
-    return parameters::assign(parameters().requested.values, schedule().at(1));
+base::Result<parameters::Parameters> World::beginning(const std::optional<evolution::FreeGenes>& listed_genes) const {
+    parameters::Parameters requested = parameters().requested.values;
+    if (listed_genes) {
+        requested.listed_genes = *listed_genes;
+        requested.free_genes = listed_genes->empty() ? requested.free_genes : listed_genes->gene_count();
+    }
+    return parameters::assign(requested, schedule().at(1));
 }
 
-World World::restarted(base::Seed seed, IslandsMaker* maker) const {
-    return {parameters::ParameterSet::all_in_effect(beginning().value(), parameters().revision), seed,
+World World::restarted(base::Seed seed, const std::optional<evolution::FreeGenes>& listed_genes,
+                       IslandsMaker* maker) const {
+    return {parameters::ParameterSet::all_in_effect(beginning(listed_genes).value(), parameters().revision), seed,
             first_population_, schedule(), maker};
 }
 

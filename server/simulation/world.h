@@ -93,13 +93,18 @@ class World {
 
     /// Returns the parameters that the run begins with after a reset: the requested parameters, with the schedule's
     /// values of generation 1. Returns a refusal if they are not valid together.
-    base::Result<parameters::Parameters> beginning() const;
+    ///
+    /// listed_genes  the list of the free genes from now on; nullopt: the present list.
+    base::Result<parameters::Parameters>
+    beginning(const std::optional<evolution::FreeGenes>& listed_genes = std::nullopt) const;
     /// Returns the world with which the run restarts after a reset: with the parameters of beginning(), the same
     /// schedule and, if one was given, the same first population. That population must be valid for these parameters.
     /// Throws std::bad_alloc if memory does not suffice for both worlds.
     ///
-    /// maker  as for a new world.
-    World restarted(base::Seed seed, IslandsMaker* maker = nullptr) const;
+    /// listed_genes  as for beginning().
+    /// maker         as for a new world.
+    World restarted(base::Seed seed, const std::optional<evolution::FreeGenes>& listed_genes = std::nullopt,
+                    IslandsMaker* maker = nullptr) const;
 
     /// Performs one tick. If a generation has ended, first breeds the next. Requires outcome() to be Running, and the
     /// world not to await fitness.

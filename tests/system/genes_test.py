@@ -14,12 +14,17 @@ from access_test import EVOD, c, plain
 
 w = plain.w
 SMALL = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2}
+LIST = [{"name": "angle", "min": -90, "max": 90}, {"name": "rate", "min": 0.001, "max": 1, "scale": "logarithmic"},
+        {"name": "layers", "min": 1, "max": 8, "step": 1}, {"name": "material", "choices": ["steel", "wood", "clay"]},
+        {"name": "tour", "permutation": 6}]
 WORLDS = {
+    "list": {**SMALL, "free_genes": LIST, "rearranging": "inversion", "rearrange_chance": 0.5,
+             "crossover": "simulated_binary", "free_gene_start": "latin_hypercube"},
     "free": {**SMALL, "free_genes": 10, "mutate_group": "free"},
     "net": {**SMALL, "controller": "network", "sense_speed": True, "sense_health": True, "sense_wall": True,
             "brain_hidden": 32},
 }
-GENES = {"free": 16, "net": 328}
+GENES = {"list": 16, "free": 16, "net": 328}
 INVALID = 3
 
 
@@ -56,9 +61,15 @@ class Genes(access.Access):
             info = client.world(name)
             self.assertEqual((len(info.gene_names), len(info.gene_groups)), (count, count))
             self.assertEqual(set(info.gene_groups[:6]), {w.GENE_GROUP_BODY})
-            beyond = w.GENE_GROUP_FREE if name == "free" else w.GENE_GROUP_BRAIN
+            beyond = w.GENE_GROUP_BRAIN if name == "net" else w.GENE_GROUP_FREE
             self.assertEqual(set(info.gene_groups[6:]), {beyond})
         self.assertEqual(client.world("free").gene_names[-1], "free9")
+        self.assertEqual(list(client.world("list").gene_names[6:]),
+                         ["angle", "rate", "layers", "material", *(f"tour{i}" for i in range(6))])
+        told = client.world("list").free_genes.genes
+        self.assertEqual([gene.name for gene in told], [gene["name"] for gene in LIST])
+        self.assertEqual(list(told[3].choices), LIST[3]["choices"])
+        self.assertFalse(client.world("free").HasField("free_genes"))
         self.assertEqual(client.world("net").gene_names[6], "hidden1<food_bearing")
         self.assertEqual(client.world("net").gene_names[-1], "turn<bias")
 
@@ -140,6 +151,64 @@ class Genes(access.Access):
                                      server=server, status=2)):
                 self.assertIn(there, said)
                 self.assertIn(expected, said)
+
+    def check_listed(self, rows):
+        """Every gene of the rows of a table has one of its values."""
+        for row in rows:
+            self.assertTrue(-90 <= float(row["angle"]) <= 90)
+            self.assertTrue(0.000999 <= float(row["rate"]) <= 1)
+            self.assertIn(float(row["layers"]), range(1, 9))
+            self.assertIn(float(row["material"]), range(3))
+            self.assertEqual(sorted(float(row[f"tour{i}"]) for i in range(6)), list(range(6)))
+
+    def test_listed_genes_keep_to_their_values(self):
+        server, client = self.begin()
+        client.call(set_parameters=plain.set_parameters("list", mutation_chance=0.5, reset_chance=0.1,
+                                                        bit_flip_chance=0.05))
+        client.run_to(1000, "list")
+        server.process.terminate()
+        self.assertEqual(waiting.ended(server.process), 0)
+        rows = rows_of(evod("export", f"{self.folder}/list.evod", "--what", "organisms"))
+        self.assertGreater(len(rows), 100)
+        self.check_listed(rows)
+        for gene in "angle", "rate", "layers", "material", "tour3":
+            self.assertGreater(len({row[gene] for row in rows}), 2, gene)
+
+    def test_a_reset_replaces_and_removes_the_list(self):
+        server, client = self.begin()
+        two = w.FreeGeneList(genes=[w.FreeGene(name="x", min=0, max=3, step=1), w.FreeGene(name="y", choices=["a", "b"])])
+        client.call(reset_world=c.ResetWorld(world="list", free_genes=two))
+        self.assertEqual(list(client.world("list").gene_names[6:]), ["x", "y"])
+        client.call(reset_world=c.ResetWorld(world="list"))
+        self.assertEqual(client.world("list").free_genes, two)
+        client.run_to(250, "list")
+        before = client.world("list").state_hash
+        server.process.kill()
+        waiting.ended(server.process)
+        server = self.serve("--speed", "max")
+        client = self.come(server)
+        self.assertEqual(client.world("list").free_genes, two)
+        self.assertEqual(client.world("list").state_hash, before)
+        refused = client.call(INVALID, set_parameters=plain.set_parameters("list", free_genes=3)).status
+        self.assertIn("2, the number of genes in the list", refused.violations[0].allowed)
+        wrong = w.FreeGeneList(genes=[w.FreeGene(name="x", min=0, max=20_000_000, step=1)])
+        refused = client.call(INVALID, reset_world=c.ResetWorld(world="list", free_genes=wrong)).status
+        self.assertEqual(refused.violations[0].field, "reset_world.free_genes[0].max")
+        client.call(reset_world=c.ResetWorld(world="list", free_genes=w.FreeGeneList()))
+        self.assertEqual(list(client.world("list").gene_names[6:]), ["free0", "free1"])
+        self.assertFalse(client.world("list").HasField("free_genes"))
+
+    def test_founders_with_values_that_no_gene_has_are_refused(self):
+        row = {"angle": 1, "rate": 0.5, "layers": 3, "material": 2, **{f"tour{i}": i for i in range(6)}}
+        body = ["normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"]
+        setting = self.file("list.json", {**WORLDS["list"], "island_count": 1, "migration": "none",
+                                          "population_size": 1})
+        for change, said in (({}, None), ({"layers": 2.5}, "layers: got 2.5"), ({"material": 3}, "material: got 3"),
+                             ({"tour5": 0}, "tour5: got 0")):
+            values = {"island": 0, "organism": 0, **dict.fromkeys(body, 100), **row, **change}
+            path = self.file("one.csv", ",".join(values) + "\n" + ",".join(map(str, values.values())) + "\n")
+            output = evod("run", setting, "--population", path, "--generations", 1, status=1 if said else 0)
+            self.assertIn(said or "", output)
 
     def test_a_sweep_varies_the_number_of_genes(self):
         sweep = self.file("sweep.json", {"experiment": {**SMALL, "fitness": "gene_sum"},

@@ -18,6 +18,35 @@
 namespace evod::base {
 
 template <>
+struct Fields<evolution::FreeGene> {
+    static void visit(auto& gene, auto&& each) {
+        each(gene.name, gene.kind, gene.min, gene.max, gene.step, gene.logarithmic, gene.mutation_step, gene.choices,
+             gene.count);
+    }
+};
+template <>
+struct Fields<evolution::FreeGenes> {
+    static void visit(auto& genes, auto&& each) {
+        std::vector<evolution::FreeGene> list = genes.list();
+        each(list);
+        if constexpr (!std::is_const_v<std::remove_reference_t<decltype(genes)>>) {
+            genes = evolution::FreeGenes{std::move(list)};
+        }
+    }
+};
+template <>
+struct Fields<parameters::Parameters> {
+    static void visit(auto& parameters, auto&& each) {
+#define EVOD_NO_VISIT(topic)
+#define EVOD_VISIT(name, ...) each(parameters.name);
+        EVOD_EVOLUTION_PARAMETERS(EVOD_NO_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT)
+        EVOD_MODEL_PARAMETERS(EVOD_NO_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT)
+#undef EVOD_NO_VISIT
+#undef EVOD_VISIT
+        each(parameters.listed_genes);
+    }
+};
+template <>
 struct Fields<evolution::GeneMatrix> {
     static void visit(auto& genes, auto&& each) {
         auto rows = static_cast<std::int64_t>(genes.rows()), columns = static_cast<std::int64_t>(genes.cols());
@@ -84,15 +113,20 @@ struct Begin {
     std::uint64_t generation;
     parameters::Parameters parameters; // as after UseParameters
     bool is_given;                     // otherwise the organisms are drawn from the seed
+    static void visit(auto& order, auto&& each) {
+        each(order.seed, order.generation, order.parameters, order.is_given);
+    }
 };
 /// The orders that follow use these parameters.
 struct UseParameters {
     parameters::Parameters parameters;
+    static void visit(auto& order, auto&& each) { each(order.parameters); }
 };
 /// Islands::restore(). Scattered: the states of the islands.
 struct Restore {
     std::uint32_t tick;                // of the generation
     parameters::Parameters parameters; // those of the state
+    static void visit(auto& order, auto&& each) { each(order.tick, order.parameters); }
 };
 struct Advance {
     GenerationTicks ticks;

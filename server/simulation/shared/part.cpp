@@ -151,11 +151,11 @@ void Part::perform(const Restore& order, base::Executor& executor, const WorldSt
     const auto given = divide(state.given_fitness);
     std::vector<std::string> parts;
     for (std::uint32_t rank = 0; is_first() && rank < exchange_.size(); ++rank) {
-        parts.push_back(bytes_of({.moment = {},
-                                  .parameters = {},
-                                  .islands = islands[rank],
-                                  .ended = ended[rank],
-                                  .given_fitness = given[rank]}));
+        WorldState part;
+        part.islands = islands[rank];
+        part.ended = ended[rank];
+        part.given_fitness = given[rank];
+        parts.push_back(bytes_of(part));
     }
     WorldState own = state_of(scatter(exchange_, std::move(parts)), shapes());
     own.moment.generation_tick = order.tick;
@@ -245,11 +245,12 @@ std::vector<SentIsland> Part::perform(const Bring& order) const {
         if (islands_.holds(index)) {
             const Island& island = islands_.island(index);
             const auto founders = islands_.founders(index);
+            WorldState state;
+            state.islands.push_back(island.state(executor));
             own.push_back(
                 {.bred = with_organisms ? std::vector{island.bred()} : std::vector<evolution::NextGeneration>{},
                  .founders = {founders.begin(), founders.end()},
-                 .state =
-                     bytes_of({.moment = {}, .parameters = {}, .islands = {island.state(executor)}, .ended = {}})});
+                 .state = bytes_of(state)});
         }
     }
     std::vector<std::vector<SentIsland>> sent = collect(exchange_, std::move(own));

@@ -276,6 +276,8 @@ export interface WorldInfo {
   gene_names?: string[];
   /** the group of each gene, in the order of gene_names */
   gene_groups?: GeneGroup[];
+  /** absent: the free genes have no list */
+  free_genes?: FreeGeneList;
   /** absent: this is a live world */
   replay?: Replay;
   /** absent: the run is not stored */
@@ -286,6 +288,33 @@ export interface WorldInfo {
   slowed?: boolean;
   /** The generation has ended, and the world waits until clients have sent fitness. Absent: the world needs no fitness. */
   awaited_fitness?: AwaitedFitness;
+}
+
+/** A free gene with rules of its own. Numbers and choices are one gene; a permutation is `permutation` genes, which contain
+ *  0, 1, 2, … in any order and have the names NAME0, NAME1, … */
+export interface FreeGene {
+  /** letters, digits and _, not a digit first; no other gene has it */
+  name?: string;
+  /** of a number; below max */
+  min?: number;
+  max?: number;
+  /** of a number: its values are min, min + step, …, max; 0: all values between the bounds */
+  step?: number;
+  /** of a number without a step: mutations and initial values follow its logarithm */
+  logarithmic?: boolean;
+  /** of a number: the size of a creep mutation; 0: free_mutation_step * (max - min) */
+  mutation_step?: number;
+  /** a choice: the gene contains the index of one of them, from 0; otherwise empty */
+  choices?: string[];
+  /** a permutation: the number of its elements, at least 2; otherwise 0 */
+  permutation?: number;
+}
+
+/** The free genes of a world in their order. Empty: the parameters free_genes, free_gene_min and free_gene_max describe
+ *  them. */
+export interface FreeGeneList {
+  /** at most 1000 genes in all */
+  genes?: FreeGene[];
 }
 
 /** A world that does not run because the server cannot restore it from its run file, or cannot write to this file because it
@@ -1082,6 +1111,9 @@ export interface CreateWorld {
   experiment_json?: string;
   /** The names of the genes in `population`, in order. If given, the new world must have exactly these genes. */
   population_gene_names?: string[];
+  /** The list of the free genes. The parameter free_genes becomes the number of its genes. experiment_json may contain the
+   *  list instead. */
+  free_genes?: FreeGeneList;
 }
 
 /** The chromosomes of an island's first generation. */
@@ -1103,6 +1135,9 @@ export interface ResetWorld {
   world?: string;
   /** absent: the previous seed */
   seed?: number|bigint;
+  /** The list of the free genes from now on, and the parameter free_genes with it; empty: they have no list any more.
+   *  Absent: the list stays. */
+  free_genes?: FreeGeneList;
 }
 
 /** Copies a world as one of its generations was bred, before the first tick and without the commands since, or at the
@@ -1955,6 +1990,8 @@ export interface Messages {
   "evod.v1.Speed": Speed;
   "evod.v1.Storage": Storage;
   "evod.v1.WorldInfo": WorldInfo;
+  "evod.v1.FreeGene": FreeGene;
+  "evod.v1.FreeGeneList": FreeGeneList;
   "evod.v1.DamagedWorld": DamagedWorld;
   "evod.v1.AwaitedFitness": AwaitedFitness;
   "evod.v1.Replay": Replay;
