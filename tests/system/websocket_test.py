@@ -121,26 +121,6 @@ class Sessions(Case):
             self.assertEqual(seen[0].plain.SerializeToString(), seen[1].plain.SerializeToString())
             self.assertEqual(seen[0].state_hash, seen[1].state_hash)
 
-    def test_fragments_and_coalesced_frames_are_read(self):
-        listing = [plain.session_pb2.ClientMessage(request=c.Request(
-            request_id=number, client_key="k", list_worlds=c.ListWorlds())).SerializeToString() for number in (1, 2, 3)]
-        data = hello_frame() + b"".join(map(protocol_frame, listing))
-        for pieces in ([data], [data[i:i + 1] for i in range(len(data))], [data[:9], b"", data[9:40], b"", data[40:]]):
-            for fragmented in (False, True):
-                with self.subTest(pieces=len(pieces), fragmented=fragmented):
-                    sent = b""
-                    for number, piece in enumerate(pieces):
-                        if fragmented:
-                            sent += frame(piece, ws.CONTINUATION if number else ws.BINARY, number == len(pieces) - 1)
-                            sent += frame(b"between", ws.PING)
-                        else:
-                            sent += frame(piece)
-                    client = self.over(self.open(self.served, early=sent), hello=False)
-                    self.assertEqual(client.control().welcome.protocol_version, 1)
-                    for number in (1, 2, 3):
-                        self.assertEqual(client.response(number).status.code, plain.OK)
-                    client.socket.close()
-
     def test_a_ping_is_answered_with_its_payload(self):
         client = self.session(self.served)
         for payload in (b"", b"x", bytes(125)):
@@ -342,15 +322,6 @@ class Floods(Case):
         self.assertGreater(time.monotonic() - begin, 28)
         self.assertIn("has not answered a ping", self.served.output())
         answers.call(list_worlds=c.ListWorlds())
-
-    def test_the_server_lives_through_noise(self):
-        for seed in range(200):
-            client = self.over(self.open(self.served), hello=False)
-            data = bytes((seed * 131 + i * i * 7 + (i >> 3)) & 255 for i in range(300))
-            with contextlib.suppress(OSError):
-                client.socket.send_raw(data)
-            client.socket.close()
-        self.control.call(list_worlds=c.ListWorlds())
 
 
 class Origins(Case):
