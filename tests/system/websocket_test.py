@@ -64,7 +64,7 @@ class Case(metrics.Case):
         return self.over(self.open(server, **options))
 
     def answer(self, server, data):
-        """The status and the text of the answer to bytes."""
+        """The status and the text of the answer to bytes, which ask the server to close the connection."""
         text = metrics.read_all(self.raw(server, data)).decode()
         return int(re.match(r"HTTP/1\.1 (\d+) ", text)[1]), text
 
@@ -331,7 +331,7 @@ class Origins(Case):
         for origin in (None, "null", "http://evil.example", f"https://127.0.0.1:{port}.evil.example",
                        "http://127.0.0.1",
                        f"http://localhost:{port}", f"http://127.0.0.1:{port}/", f"file://127.0.0.1:{port}"):
-            status, text = self.answer(server, handshake(port, Origin=origin))
+            status, text = self.answer(server, handshake(port, Origin=origin, Connection="close, Upgrade"))
             self.assertEqual(status, 403, origin)
             self.assertIn("the Origin field must be", text)
         self.assertEqual(self.metrics(server)("evod_http_refused_total", because="origin"), 8)
@@ -349,7 +349,8 @@ class Origins(Case):
                 self.assertEqual(status, 403, host)
                 self.assertIn("--http-host NAME", text)
         for field in ("", "Host: localhost\r\nHost: localhost\r\n"):
-            self.assertEqual(self.answer(server, f"GET / HTTP/1.1\r\n{field}\r\n".encode())[0], 400)
+            request = f"GET / HTTP/1.1\r\n{field}Connection: close\r\n\r\n"
+            self.assertEqual(self.answer(server, request.encode())[0], 400)
         for host in ("localhost", "localhost:1", "127.0.0.1", f"[::1]:{port}", "LocalHost.", socket.gethostname()):
             status, _ = self.answer(server,
                                     f"GET /metrics HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n".encode())
@@ -435,7 +436,7 @@ class WithTokens(Case, access.Access):
         self.assertIn((ws.PONG, b"over TLS"), client.socket.controls)
         with contextlib.closing(socket.create_connection(("127.0.0.1", port))) as connection:
             over = tls.wrap_socket(connection, server_hostname="localhost")
-            over.sendall(handshake(port))  # with the Origin http://
+            over.sendall(handshake(port, Connection="close, Upgrade"))  # with the Origin http://
             self.assertRegex(metrics.read_all(over), rb"^HTTP/1\.1 403 ")
         server.end()
         self.assertEqual(client.socket.at_end(), GOING_AWAY)
