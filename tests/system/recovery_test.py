@@ -1,6 +1,6 @@
 """Kills real servers and starts them again: nothing that was answered is lost or repeated.
 
-    EVOD=… MESSAGES=… recovery_test.py      how often a test kills: KILLS (25)
+    EVOD=… MESSAGES=… recovery_test.py      how often a test kills: KILLS (15)
 """
 import contextlib
 import os
@@ -25,7 +25,7 @@ from evod.v1 import commands_pb2 as c, session_pb2, world_pb2 as w  # noqa: E402
 import waiting  # noqa: E402
 from waiting import until  # noqa: E402
 
-evod, kills = os.environ["EVOD"], int(os.environ.get("KILLS", "25"))
+evod, kills = os.environ["EVOD"], int(os.environ.get("KILLS", "15"))
 
 
 class Server:
