@@ -7,7 +7,6 @@ import unittest
 import evod
 import evod.aio
 from evod.v1 import commands_pb2 as c
-from support import Relay, Server
 from every_request import record_kinds, send_every_request
 
 
@@ -75,27 +74,6 @@ class Asynchronous(unittest.IsolatedAsyncioTestCase):
                         await anext(events)
                 await world.pause()
                 self.assertEqual((await anext(events)).WhichOneof("kind"), "run_control_changed")
-
-    async def test_a_run_continues_after_a_kill(self):
-        with tempfile.TemporaryDirectory() as data:
-            options = ["--data", data, "--seed", "5", "--speed", "max"]
-            server = await asyncio.to_thread(Server, *options)
-            relay = Relay(server.port)
-            async with evod.aio.connect(relay.address) as lab:
-                world, numbers = await lab.world(), []
-                async for g in world.run(generations=30):
-                    numbers.append(g.number)
-                    if g.number in (5, 12):
-                        server.kill()
-                        server = await asyncio.to_thread(Server, *options)
-                        relay.port = server.port
-                    if g.number == 20:
-                        relay.cut()
-                revision = (await world.set(mutation_chance=0.5)).revision
-                self.assertEqual((await world.get_parameters()).revision, revision)
-            self.assertEqual(numbers, list(range(1, 31)))
-            relay.close()
-            server.kill()
 
     async def test_a_bug_in_the_client_fails_waiting_calls(self):
         async with evod.aio.local() as lab:

@@ -64,7 +64,9 @@ class Connect(unittest.TestCase):
         self.assertEqual(asyncio.run(cell()), 50)
 
     def test_a_program_ends_with_open_connections(self):
-        program = ("import evod; lab = evod.local(); other = evod.connect(lab.address); events = other.events(); "
+        # In development mode asyncio warns of steps that a busy machine made slow.
+        program = ("import logging; logging.getLogger('asyncio').setLevel(logging.ERROR); "
+                   "import evod; lab = evod.local(); other = evod.connect(lab.address); events = other.events(); "
                    "snapshots = lab.world().snapshots(); print(len(next(snapshots).organisms))")
         # Python 3.13 warns of a deprecation in protobuf 3.21.
         command = ["/usr/bin/python3", "-X", "dev", "-W", "ignore::DeprecationWarning", "-c", program]

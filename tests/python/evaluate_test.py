@@ -173,38 +173,6 @@ class Evaluate(unittest.TestCase):
             world.evaluate(lambda genes, life: 1 / 0, generations=1)
         self.assertEqual([g.number for g in world.evaluate(gene_sum, generations=2)], [1, 2])
 
-    def test_the_server_refuses_what_the_package_would_not_send(self):
-        world = self.lab.create_world("refused", {**OPTIMISER, "island_count": 2}, seed=2)
-        world.run(generations=1)
-        until(lambda: world.info().awaited_fitness, "the end of the generation")
-
-        def refused(code, field, **fields):
-            with self.assertRaises(evod.Error) as raised:
-                self.lab.request(set_fitness=c.SetFitness(world="refused", **fields))
-            self.assertEqual(raised.exception.code_name, code, raised.exception)
-            self.assertEqual([v.field for v in raised.exception.violations], [field] if field else [])
-            for violation in raised.exception.violations:
-                self.assertTrue(violation.allowed and violation.got)
-
-        before = world.info().state_hash
-        refused("INVALID_ARGUMENT", "fitness", generation=1)
-        refused("INVALID_ARGUMENT", "fitness[1]", generation=1, fitness=[0, numpy.nan])
-        refused("INVALID_ARGUMENT", "fitness", generation=1, fitness=[0] * 31)
-        refused("INVALID_ARGUMENT", "first_organism", generation=1, first_organism=3, fitness=[0])
-        refused("NOT_FOUND", "island", generation=1, island=2, fitness=[0])
-        refused("ABORTED", "generation", generation=2, fitness=[0])
-        self.assertEqual(world.info().state_hash, before)
-        self.lab.request(set_fitness=c.SetFitness(world="refused", generation=1, fitness=[0] * 30))
-        refused("FAILED_PRECONDITION", None, generation=1, fitness=[0] * 30)
-        self.assertEqual(world.info().awaited_fitness.islands, (1,))
-        with self.assertRaises(evod.FailedPrecondition):
-            world.place(food=[(30, 40)])
-        replay = world.open_replay()
-        with self.assertRaises(evod.FailedPrecondition):
-            self.lab.request(set_fitness=c.SetFitness(world=replay.name, generation=1, fitness=[0] * 30))
-        with self.assertRaisesRegex(evod.FailedPrecondition, "set fitness to external"):
-            self.lab.world("default").evaluate(gene_sum, generations=1)
-
     def test_a_large_population_is_rated_in_parts(self):
         world = self.lab.create_world("large", {**OPTIMISER, "population_size": 140_000}, seed=2)
         history = world.evaluate(gene_sum, generations=2)
@@ -235,21 +203,6 @@ class Evaluate(unittest.TestCase):
         self.assertTrue(all(30 <= length <= ended for length in lengths), lengths)
         self.assertEqual([g.number for g in world.history()], list(range(1, ended + 1)))
         verify(self.data.name, "shared")
-
-    def test_a_fork_and_a_replay_repeat_the_numbers(self):
-        world = self.lab.create_world("origin", OPTIMISER, seed=4)
-        world.evaluate(gene_sum, generations=8)
-        hashes = world.info().state_hash
-        fork = world.fork("branch", at_generation=5)
-        fork.evaluate(gene_sum, generations=4)
-        self.assertEqual(fork.info().state_hash, hashes)
-        with world.open_replay(generation=7) as replay:
-            replay.resume()
-            until(lambda: replay.info().tick == 8, "the end of the replay")
-            self.assertEqual(replay.info().state_hash, hashes)
-            self.assertEqual(replay.history()[-1].number, 8)
-        for name in ("origin", "branch"):
-            verify(self.data.name, name)
 
 
 CLIENT = """

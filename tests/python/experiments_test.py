@@ -80,17 +80,6 @@ class Sweep(Temporary):
         self.assertEqual(len(sweep.last), 8)
         self.assertEqual(set(sweep.last.generation), {3})
 
-    def test_lists_hypercubes_and_resumed_sweeps_work(self):
-        cells = [{"mutation_chance": 0.1}, {"selection": "random"}]
-        self.assertEqual(evod.sweep(SMALL, list=cells, generations=2).cell_count, 2)
-        cube = {"samples": 3, "parameters": {"mutation_chance": {"from": 0.1, "to": 0.3}}}
-        kept = [evod.sweep(SMALL, latin_hypercube=cube, generations=2, out=self.folder / "cube").csv for _ in range(2)]
-        self.assertEqual(kept[0], kept[1])
-        self.assertEqual(len(list((self.folder / "cube" / "parts").iterdir())), 3)
-        error = self.refused(lambda: evod.sweep(SMALL, latin_hypercube=cube, generations=3, out=self.folder / "cube"),
-                             "parameters", "sweep file")
-        self.assertIn("name another folder with out", str(error))
-
     def test_a_cancelled_sweep_stops_the_program(self):
         script = self.folder / "evod"
         script.write_text(f"#!/bin/sh\necho $$ >{self.folder}/pid.new; mv {self.folder}/pid.new {self.folder}/pid; "

@@ -21,15 +21,6 @@ LAYERS = ([f"hidden{h}<{source}" for h in range(1, 5)
                                                                           "bias")])
 
 
-def network_of(weights, brain):
-    """The activations of the hidden neurons and the outputs, computed from the weights and the inputs."""
-    hidden, outputs = len(brain.hidden), len(brain.outputs)
-    first = weights[: -outputs * (hidden + 1)].reshape(hidden, -1).astype(float)
-    second = weights[-outputs * (hidden + 1) :].reshape(outputs, -1).astype(float)
-    neurons = numpy.tanh(first[:, :-1] @ brain.inputs + first[:, -1])
-    return neurons, numpy.tanh(second[:, :-1] @ neurons + second[:, -1])
-
-
 class Network(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -40,9 +31,6 @@ class Network(unittest.TestCase):
         cls.world = cls.lab.world()
         cls.generations = list(cls.world.run(3))
         cls.world.step(40)
-
-    def weights(self, genes):
-        return genes[..., [group is evod.GeneGroup.BRAIN for group in self.world.info().gene_groups]]
 
     def test_chromosomes_have_the_weights_after_the_body(self):
         info = self.world.info()
@@ -67,19 +55,6 @@ class Network(unittest.TestCase):
         with self.assertRaisesRegex(KeyError, "there is no gene 'impulsive'"):
             last.islands[0].genes["impulsive"]
         self.assertEqual(pickle.loads(pickle.dumps(last.islands[0].genes))["turn<bias"], last.islands[0].genes[-1])
-
-    def test_breeding_names_the_parent_of_every_weight(self):
-        breeding, genes = self.world.breeding(generation=2), len(evod.GENE_NAMES) + len(LAYERS)
-        children = [d for d in breeding.descendants if d.crossed and d.second_share == 0 and d.order_mutation is None]
-        self.assertTrue(children)
-        for child in children:
-            mask = numpy.array([child.from_second >> gene & 1 for gene in range(genes)], bool)
-            expected = numpy.where(mask, child.second_genes, child.first_genes)
-            for mutation in child.mutations:
-                expected[mutation.gene] = mutation.after
-            numpy.testing.assert_array_equal(child.genes, expected)
-        self.assertTrue(any(child.from_second >> 32 for child in children),
-                        "no gene after the 32nd is of a second parent")
 
     def test_snapshots_contain_the_headings(self):
         with self.world.snapshots(60) as snapshots:
@@ -116,47 +91,6 @@ class Network(unittest.TestCase):
             numpy.testing.assert_allclose(column, whole.headings if headings else [], atol=1e-6)
             messages.append(messages[0])
             del held
-
-    def test_activations_are_those_of_the_network(self):
-        for id in self.world.snapshot().organisms.id[:10]:
-            organism = self.world.organism(int(id))
-            brain = organism.brain
-            self.assertEqual(organism.choice, evod.Choice.STEER)
-            self.assertEqual(brain.input_names, ("food_bearing", "food_proximity", "poison_bearing", "poison_proximity",
-                                                 "speed"))
-            self.assertEqual((brain.output_names, brain.has_bias), (("thrust", "turn"), True))
-            speed = numpy.hypot(organism.velocity_x_px_s, organism.velocity_y_px_s)
-            self.assertAlmostEqual(brain.inputs[4], speed / self.world.parameters.max_speed_px_s, places=5)
-            hidden, outputs = network_of(self.weights(organism.genes), brain)
-            numpy.testing.assert_allclose(brain.hidden, hidden, atol=2e-6)
-            numpy.testing.assert_allclose(brain.outputs, outputs, atol=2e-6)
-
-    def test_the_bearing_of_food_is_relative_to_the_heading(self):
-        snapshot = self.world.snapshot()
-        seen = 0
-        for id in snapshot.organisms.id:
-            organism = self.world.organism(int(id))
-            to_food = snapshot.food.positions - (organism.x_px, organism.y_px)
-            distance = numpy.hypot(*to_food.T)
-            nearest, radius = distance.argmin(), float(organism.genes["food_radius"])
-            if distance[nearest] > radius - 1:
-                continue
-            seen += 1
-            bearing = numpy.arctan2(to_food[nearest, 1], to_food[nearest, 0]) - organism.heading
-            off = (bearing - organism.brain.inputs[0] * numpy.pi + numpy.pi) % (2 * numpy.pi) - numpy.pi
-            self.assertLess(abs(off) * distance[nearest], 0.2)  # px; positions are rounded
-            self.assertAlmostEqual(float(organism.brain.inputs[1]), 1 - distance[nearest] / radius, delta=0.1 / radius)
-        self.assertGreater(seen, 0)
-
-    def test_a_replay_shows_the_same_networks(self):
-        moment = self.world.info()
-        live = self.world.organism(5)
-        with self.world.open_replay(tick=moment.tick) as past:
-            again = past.organism(5)
-        numpy.testing.assert_array_equal(again.genes, live.genes)
-        self.assertEqual(again.heading, live.heading)
-        if live.brain is not None:
-            numpy.testing.assert_array_equal(again.brain.outputs, live.brain.outputs)
 
     def test_the_run_can_be_verified(self):
         (path,) = pathlib.Path(self.folder.name).glob("*.evod")

@@ -2,12 +2,11 @@
 import contextlib
 import sqlite3
 import tempfile
-import threading
 import unittest
 
 import evod
 from evod.v1 import commands_pb2 as c
-from support import Relay, Server, until
+from support import Relay, Server
 
 
 class Reconnect(unittest.TestCase):
@@ -87,34 +86,6 @@ class Reconnect(unittest.TestCase):
         self.assertEqual(len(deaths), 4)
         self.assertEqual(parameters.mutation_chance, 0.5)
         self.assertEqual(len(self.applied_ids(lab)), 2)  # run, set_parameters
-
-    def test_kills_at_any_time_apply_each_command_once(self):
-        relay = Relay(self.server.port)
-        lab = self.connect(relay)
-        world = lab.world()
-        world.run()
-        done, failures, enough = [], [], threading.Event()
-
-        def work():
-            try:
-                while not enough.is_set():
-                    done.append(world.set(food_health=len(done) % 50).revision)
-            except evod.Error as error:
-                failures.append(error)
-
-        worker = threading.Thread(target=work)
-        worker.start()
-        for _ in range(4):
-            count = len(done)
-            until(lambda: len(done) > count + 3 or failures, "some more commands are applied")
-            self.restart(relay)
-        count = len(done)
-        until(lambda: len(done) > count + 3 or failures, "commands are applied again")
-        enough.set()
-        worker.join()
-        self.assertEqual(failures, [])
-        self.assertEqual(done, sorted(set(done)))  # each command increased the revision
-        self.assertEqual(len(self.applied_ids(lab)), 1 + len(done))
 
     def test_each_generation_is_returned_once_across_a_kill(self):
         relay = Relay(self.server.port)

@@ -8,7 +8,7 @@ import unittest
 
 import export_test
 import waiting
-from past_test import CREATE, EVOCTL, EVOD, c, plain, w
+from past_test import CREATE, EVOCTL, c, plain
 
 NOT_FOUND, FAILED_PRECONDITION = 5, 9
 
@@ -132,19 +132,6 @@ class Breeding(export_test.Runs):
                            capture_output=True, text=True).stdout
         self.assertRegex(text, r"ORGANISM +OWN FITNESS +SHUFFLED +RANK")
         self.assertIn("shuffle_fitness=true", text)
-        # Killed, it goes on as if nothing had been; a fork of its third generation goes the same way.
-        server.kill()
-        server, client = self.serve()
-        client.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=3))
-        for name, generations in ("w", 2), ("f", 5):
-            client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
-            client.call(run=c.Run(world=name, generations=generations))
-        plain.until(lambda: all(client.world(name).state == w.RUN_STATE_WAITING for name in "wf"), "generations")
-        self.assertEqual(client.world("w").state_hash, client.world("f").state_hash)
-        server.end()
-        for name in "wf":
-            done = waiting.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
-            self.assertIn("everything agrees", done.stdout, done.stderr)
 
     def test_spread_genes_can_be_computed_from_the_record(self):
         _, client = self.serve()
@@ -180,45 +167,6 @@ class Breeding(export_test.Runs):
                                    capture_output=True, text=True).stdout for generation in range(1, 4))
         self.assertRegex(text, r" → \d+\.\d\d scale")
         self.assertRegex(text, r"child +\d+, \d+ +0\.\d{3} of 1 \+ 0\.\d{3} of 2 ")
-        server.kill()
-        server, client = self.serve()  # from the file
-        client.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=3))
-        for name, generations in ("w", 2), ("f", 4):
-            client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
-            client.call(run=c.Run(world=name, generations=generations))
-        plain.until(lambda: all(client.world(name).state == w.RUN_STATE_WAITING for name in "wf"), "generations")
-        self.assertEqual(client.world("w").state_hash, client.world("f").state_hash)
-        server.end()
-        for name in "wf":
-            done = waiting.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
-            self.assertIn("everything agrees", done.stdout, done.stderr)
-
-    def test_every_selection_method_reports_its_picks(self):
-        _, client = self.serve()
-        methods = {"roulette": ["turns"], "stochastic_universal": ["turns"], "tournament": ["tournament"], "random": [],
-                   "truncation": []}
-        self.run_world(client, 1)
-        for number, (method, fields) in enumerate(methods.items(), 1):
-            client.call(set_parameters=plain.set_parameters("w", selection=method))
-            client.call(run=c.Run(world="w", generations=1))
-            plain.until(lambda: client.world("w").generation == number + 1 and
-                        client.world("w").state == w.RUN_STATE_WAITING, "a generation")
-            bred = self.breeding(client)
-            self.assertEqual((bred.generation, self.parameters(bred)["selection"]), (number, method))
-            self.check(bred, self.organisms())
-            for pick in bred.picks:
-                self.assertEqual([name for name in ("turns", "tournament") if pick.HasField(name)], fields)
-                self.assertEqual(len(pick.contestants), 3 if method == "tournament" else 0)
-
-    def test_parameters_are_those_of_the_breeding(self):
-        _, client = self.serve()
-        self.recorded(client)  # changes them at tick 250, in the third generation, which ends with tick 360
-        table = None
-        for generation, expected in ((1, (12, 0.15)), (2, (12, 0.15)), (3, (15, 0.5))):
-            bred = self.breeding(client, generation=generation)
-            table = table or self.organisms()
-            self.assertEqual((bred.descendant_count, self.parameters(bred)["mutation_chance"]), expected)
-            self.check(bred, table)
 
     def test_a_running_world_reports_the_latest_breeding(self):
         _, client = self.serve()

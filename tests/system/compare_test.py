@@ -29,14 +29,6 @@ class Compare(Folder):
         done = self.compare(*words, "--csv", table)
         return done.stdout, pathlib.Path(table).read_text()
 
-    def test_the_same_seed_gives_the_same_bytes_for_any_jobs(self):
-        words = ["--controls", "--replicates", "4", "--generations", "5", *SMALL]
-        first = self.outputs(*words, "--seed", "7", "--jobs", "1")
-        for jobs in "2", "5":
-            self.assertEqual(self.outputs(*words, "--seed", "7", "--jobs", jobs, name="b"), first)
-        other = self.outputs(*words, "--seed", "8", name="c")
-        self.assertNotEqual(other[1], first[1])
-
     def test_the_table_agrees_with_the_csv(self):
         text, table = self.outputs("--controls", "--replicates", "8", "--generations", "6", "--seed", "3", *SMALL)
         rows = list(csv.DictReader(io.StringIO(table)))
@@ -78,25 +70,6 @@ class Compare(Folder):
                 self.assertAlmostEqual(float(row["fitness_mean"]), float(expected["fitness_mean"]), places=9)
                 self.assertEqual((row["fitness_best"], row["alive_count"]),
                                  (expected["fitness_best"], expected["alive_count"]))
-
-    def test_selection_raises_the_sum_of_the_genes(self):
-        text, _ = self.outputs("--controls", "--generations", "15", "--seed", "3", "--set", "fitness=gene_sum",
-                                  "--set", "selection=truncation")
-        self.assertIn("default: 20 replicates of 15 generations, from seed 3\n", text)
-        self.assertIn("Did evolution do it? Yes: the mean fitness rose by ", text)
-        self.assertRegex(text, r"\nharmless_poison +is not run: the fitness is a function of the chromosome, and "
-                               r"organisms do not eat\n")
-        self.assertIn("\nPoison: the fitness is a function of the chromosome, and organisms do not eat.\n", text)
-        self.assertIn("new variety adds to the variety of the first generation", text)
-        self.assertRegex(text, r"random_selection .* selection=random\n")
-
-    def test_a_world_without_selection_gets_the_answer_no(self):
-        text, table = self.outputs("--controls", "--replicates", "20", "--generations", "3", "--seed", "3", *SMALL,
-                                            "--set", "selection=random", "--set", "mutation_chance=0", "--set",
-                                   "poison_harm=0")
-        self.assertIn("Did evolution do it? No: parents are already drawn at random", text)
-        self.assertEqual(text.count("is not run: "), 4)
-        self.assertEqual({r["arm"] for r in csv.DictReader(io.StringIO(table))}, {"default"})
 
     def test_the_plot_has_a_curve_and_a_band_for_each_world(self):
         files = [f"{self.folder.name}/{name}.svg" for name in "ab"]
@@ -144,13 +117,6 @@ class Compare(Folder):
         self.assertIn("mine: 2 replicates of 3 generations, from seed 6\n", text)
         text = self.compare("--controls", "--replicates", "2", "--set", "fitness=gene_sum").stdout
         self.assertIn("default: 2 replicates of 60 generations, from seed ", text)
-
-    def test_few_replicates_cause_a_warning(self):
-        done = self.compare("--controls", "--replicates", "5", "--generations", "3", "--set", "fitness=gene_sum")
-        self.assertIn("--replicates: fewer than 20 replicates can show only large differences", done.stderr)
-        self.assertIn("There are too few replicates to answer", done.stdout)
-        done = self.compare("--controls", "--replicates", "20", "--generations", "3", "--set", "fitness=gene_sum")
-        self.assertEqual(done.stderr, "")
 
     def test_refusals_name_the_option_and_its_value(self):
         path = self.file("{}")

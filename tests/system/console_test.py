@@ -47,26 +47,6 @@ class Run(Folder):
                 self.assertIn("ended: generation_limit", done.stdout)
                 self.assertIn("M organism-ticks/s", done.stdout)
 
-    def test_a_seed_gives_the_same_state_for_any_threads(self):
-        states = {
-            state(evod("run", "--seed", "7", "--generations", "3", "--threads", str(n), *self.short).stdout)
-            for n in (1, 2, 3)
-        }
-        self.assertEqual(len(states), 1)
-        other = evod("run", "--seed", "8", "--generations", "3", *self.short)
-        self.assertNotIn(state(other.stdout), states)
-
-    def test_the_csv_has_a_row_for_every_generation_and_island(self):
-        path = self.folder.name + "/run.csv"
-        evod("run", "--seed", "1", "--generations", "3", "--csv", path, "--set", "island_count=2", *self.short)
-        rows = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
-        self.assertEqual([(r["generation"], r["island"]) for r in rows],
-                         [(str(g), str(i)) for g in (1, 2, 3) for i in (0, 1)])
-        for row in rows:
-            self.assertEqual(int(row["alive_count"]) + int(row["starved_count"]) + int(row["poisoned_count"]), 12)
-            self.assertLessEqual(float(row["fitness_worst"]), float(row["fitness_mean"]))
-            self.assertLessEqual(float(row["fitness_mean"]), float(row["fitness_best"]))
-
     def test_the_exit_status_is_the_outcome(self):
         evod("run", "--seed", "1", "--set", "stop_at_target_fitness=true", "--set", "target_fitness=1", *self.short)
         evod("run", "--seed", "1", "--set", "stagnation_limit=2", "--set", "fitness=gene_sum", "--set",
@@ -98,11 +78,6 @@ class Run(Folder):
                     "--set", "generation_s=1.5")
         self.assertEqual(state(done.stdout), state(same.stdout))
 
-    def test_ask_fails_at_the_end_of_its_input(self):
-        for answers in ("", "9\n", "9\n11\n\n1.5\n1\n"):
-            done = evod("run", "--seed", "1", "--ask", stdin=answers, status=1)
-            self.assertIn("--ask: the input ended before the answer to ", done.stderr)
-
     def test_control_characters_of_files_are_not_printed(self):
         path = pathlib.Path(self.folder.name) / "steering.json"
         path.write_bytes(b'{"mutation_\\u001b[2Jchance\xc2\x9b31m": 1}')
@@ -122,22 +97,6 @@ class Run(Folder):
     def test_wrong_usage_ends_with_status_2(self):
         for arguments in (("--seed", "-1"), ("--generations", "many"), ("--threads", "0"), ("--speed", "2")):
             evod("run", *arguments, status=2)
-
-    def test_values_that_are_not_allowed_are_named(self):
-        for arguments, words in {
-            ("--set", "mutation_chance=1.5"): ["--set mutation_chance: got 1.5, allowed 0 to 1"],
-            ("--set", "mutation_chanse=0.5"): ["--set mutation_chanse", "did you mean mutation_chance"],
-            ("--set", "selection=luck"): ["--set selection: got luck, allowed roulette, stochastic_universal"],
-            ("--set", "population_size"): ["--set: got population_size, allowed name=value"],
-            ("--set", "generation_s=nan"): ["--set generation_s: got nan"],
-            ("--csv", "/nowhere/run.csv"): ["--csv: cannot write /nowhere/run.csv"],
-            ("/nowhere.json",): ["/nowhere.json: cannot be read: No such file"],
-            ("--population", "/nowhere.csv"): ["--population: /nowhere.csv: cannot be read: No such file"],
-        }.items():
-            with self.subTest(arguments):
-                done = evod("run", *arguments, status=2 if arguments[0] == "--set" else 1)
-                for word in words:
-                    self.assertIn(word, done.stderr)
 
 
 class Options(Folder):
@@ -171,24 +130,6 @@ class Options(Folder):
         for option in (["--durability", "full"], ["--file-bytes-max", "2000000"], ["--keep-every", "2"]):
             self.assertEqual(evod("--keep-nothing", *option, status=2).stderr,
                              f"evod: --keep-nothing: not allowed with {option[0]}\nSee evod --help\n")
-
-    def test_an_invalid_number_is_reported_with_its_range(self):
-        for words, least, most in ((["--port"], 0, 65535), (["--http-port"], 0, 65535), (["--threads"], 1, 1024),
-                                   (["--sessions-max"], 2, 1000000), (["--worlds-max"], 1, 1000000),
-                                   (["--seed"], 0, 2**64 - 1),
-                                   (["--keep-every"], 1, 10**9), (["--file-bytes-max"], 2**20, 2**50),
-                                   (["run", "--generations"], 0, 2**32 - 1), (["run", "--threads"], 1, 1024),
-                                   (["replay", "x", "--generation"], 1, 2**64 - 1),
-                                   (["fork", "x", "--name", "y", "--at-generation"], 1, 2**64 - 1),
-                                   (["export", "x", "--generation"], 1, 2**64 - 1),
-                                   (["verify", "x", "--threads"], 1, 1024)):
-            for given in ("-1", "1e99", "abc", "1.5", "010", str(2**64), *(["0"] if least > 0 else [])):
-                with self.subTest(words=words, given=given):
-                    self.assertIn(f"evod: {words[-1]}: got {given}, allowed a whole number, {least} to {most}\n",
-                                  evod(*words, given, status=2).stderr)
-        for given in ("0", "-1", "1e99", "abc", "nan"):
-            self.assertIn(f"evod: --speed: got {given}, allowed max, or 0.001 to 10000\n",
-                          evod("--speed", given, status=2).stderr)
 
 
 class Output(Folder):
@@ -278,70 +219,12 @@ class Population(Folder):
         other = self.run_with("0,0,100,110,120,130,140,150\n0,1,101.5,90,80,70.25,60,51\n")
         self.assertNotEqual(state(done.stdout), state(other.stdout))
 
-    def test_errors_of_a_population_file_are_named(self):
-        good = "0,0,100,110,120,130,140,150\n"
-        for rows, word in {
-            good: "population[0]: got 1 organism, allowed 2 organisms (population_size)",
-            good + "0,1,100,110,20,130,140,150\n": "population[0].organism[1].body_size: got 20, allowed 40 to 200",
-            good + "1,0,100,110,120,130,140,150\n": "population: got 2 islands, allowed 1 island (island_count)",
-            good + "0,2,100,110,120,130,140,150\n":
-                "line 3: got \"0,2,100,110,120,130,140,150\", allowed organism 1 of",
-            good + "0,1,100,110,120,130,140\n": "line 3: got \"0,1,100,110,120,130,140\", allowed an island, an "
-                                                "organism",
-            good + "0,1,100,110,120,130,140,\n": "line 3: got ",
-            good + "0,1,100,110,many,130,140,150\n": "line 3: got ",
-            good + "0,1,100,110,nan,130,140,150\n": "body_size: got nan",
-            good + "0,1,100,110,120,130,140,150,160\n": "line 3: got ",
-            "1,0,100,110,120,130,140,150\n": "line 2: got ",
-            "": "contains no organism",
-        }.items():
-            with self.subTest(rows):
-                said = self.run_with(rows, status=1).stderr
-                self.assertIn("evod: --population: ", said)
-                self.assertIn("plate.csv: ", said)
-                self.assertIn(word, said)
-        self.assertIn("line 1: got \"{}\", allowed the heading island,",
-                      evod("run", "--population", self.file("{}", "plate.csv"), status=1).stderr)
-
 
 class Check(Folder):
     def test_a_valid_file_is_described(self):
         done = evod("check", self.file('{"food_count": 3, "seed": 18446744073709551615, "description": "Few meals."}'))
         self.assertIn("valid\nFew meals.", done.stdout)
         self.assertEqual(json.loads(done.stdout[done.stdout.index("{"):]), {"food_count": 3})
-
-    def test_errors_name_their_line(self):
-        for text, word in {
-            '{\n  "food_count": 3,\n  "mutation_chance": 2\n}': "mutation_chance (line 3): got 2, allowed 0 to 1",
-            '{\n\n "fod_count": 3}': "fod_count (line 3): unknown name; did you mean food_count",
-            '{\n "food_count": 3,\n}': "not JSON: line 3",
-            '{\n "food_count": -3}': "food_count (line 2): got -3",
-            '{\n "seed": 1.5}': "seed (line 2): got 1.5",
-            '{\n "food_count": [3]}': "food_count (line 2): got [3]",
-            "[1]": "expected a JSON object of parameters",
-            '{"body_size_min": 300}': "body_size_max (line 1): got 200, allowed at least body_size_min (300)",
-            '{"population_size": 100000}': "population_size (line 1)",
-        }.items():
-            with self.subTest(text):
-                self.assertIn(word, evod("check", self.file(text), status=1).stderr)
-        self.assertIn("this is a folder", evod("check", self.folder.name, status=1).stderr)
-
-    def test_integrators_have_half_the_error_at_half_the_tick(self):
-        rows = [[float(word) for word in line.split()] for line in evod("check", "--integrators").stdout.splitlines()
-                if re.match(r"0\.", line)]
-        self.assertEqual([row[0] for row in rows], [0.8, 0.4, 0.2, 0.1, 0.05])
-        for tick_s, ticks, explicit, explicit_error, symplectic, symplectic_error, speed in rows:
-            self.assertAlmostEqual(tick_s * ticks, 2.4)
-            self.assertEqual((explicit_error, symplectic_error), (round(-2.4 * tick_s, 3), round(2.4 * tick_s, 3)))
-            self.assertEqual((round(explicit - 5.76, 3), round(symplectic - 5.76, 3)),
-                             (explicit_error, symplectic_error))
-            self.assertEqual(speed, 4.8)
-
-    def test_a_file_and_integrators_exclude_each_other(self):
-        said = evod("check", "--integrators", self.file("{}"), status=2).stderr
-        self.assertIn("--integrators", said)
-        self.assertIn("experiment", said)
-        self.assertIn("experiment: required unless --integrators is given", evod("check", status=2).stderr)
 
 
 class Image(Folder):

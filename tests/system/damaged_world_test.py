@@ -120,24 +120,6 @@ class DamagedWorld(past.Case):
         done = waiting.run([EVOD, "verify", str(self.path)], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (1, "", f"evod: {self.folder}/{reason}\n"))
 
-    def test_a_replaced_copy_runs_again(self):
-        self.recorded("a", "b")
-        sound = pathlib.Path(self.folder, "b.evod").read_bytes()
-        self.serve()[0].end()
-        self.path.write_bytes(sound)
-        _, client = self.serve()
-        self.assertEqual((self.damaged(client), client.world("a").tick), ({}, 300))
-
-    def test_an_unreadable_new_file_stops_only_its_world(self):
-        self.recorded("b")
-        pathlib.Path(self.folder, "n.evod-next").write_bytes(b"x" * 5000)
-        server, client = self.serve()
-        self.assertEqual(sorted(self.damaged(client)), ["b", "n"])
-        client.call(delete_world=c.DeleteWorld(world="n"))
-        server.end()
-        _, client = self.serve()
-        self.assertEqual(sorted(self.damaged(client)), ["b"])
-
     def test_damage_while_it_runs_stops_only_this_world(self):
         server, client = self.serve("--seed", "1", "--http-port", "0")
         for name in ("a", "b"):

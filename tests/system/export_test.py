@@ -15,7 +15,7 @@ from past_test import CREATE, EVOD, EVOCTL, c, plain, w
 
 WHATS = {"generations": c.RUN_TABLE_GENERATIONS, "organisms": c.RUN_TABLE_ORGANISMS, "lineage": c.RUN_TABLE_LINEAGE,
          "population": c.RUN_TABLE_POPULATION, "events": c.RUN_TABLE_EVENTS}
-INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION, RESOURCE_EXHAUSTED = 3, 5, 9, 8
+INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION = 3, 5, 9
 
 
 class Runs(past.Case):
@@ -125,26 +125,6 @@ class Export(Runs):
         self.assertEqual(self.evoctl(server, "--what", "population", "--generation", "2"),
                          self.evod_export("--what", "population", "--generation", "2"))
 
-    def test_purged_generations_are_simulated_again(self):
-        _, client = self.serve("--keep-every", "50")
-        self.run_world(client, 120, fitness="gene_sum", population_size=100)
-        text, parts = self.table(client, table=c.RUN_TABLE_ORGANISMS)
-        self.assertGreater(parts, 3)
-        self.assertEqual(text, self.evod_export("--what", "organisms"))
-        self.assertEqual(text.count("\n"), 1 + 120 * 2 * 100)
-
-    def test_a_population_can_be_copied_to_another_world(self):
-        server, client = self.serve()
-        self.run_world(client, 3)
-        plate = f"{self.folder}/plate.csv"
-        self.evoctl(server, "--what", "population", "--output", plate)
-        words = [word for name, value in CREATE.items() for word in ("--set", f"{name}={value}")]
-        done = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "create", "copy",
-                            "--population", plate, *words], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        copied, _ = self.table(client, world="copy", table=c.RUN_TABLE_POPULATION)
-        self.assertEqual(copied, pathlib.Path(plate).read_text())
-
     def test_a_running_world_can_be_exported(self):
         _, client = self.serve()
         self.run_world(client, 30)
@@ -186,20 +166,6 @@ class Export(Runs):
         self.assertIn("only with --what lineage", self.evoctl(server, "--what", "events", "--of", "1:0:0", status=2))
         self.assertIn("No such file", self.evoctl(server, "--what", "events", "--output", "/nowhere/x", status=2))
         client.call(list_worlds=c.ListWorlds())
-
-    def test_a_session_has_one_export(self):
-        server, client = self.serve()
-        self.run_world(client, 60, fitness="gene_sum", population_size=100)
-        organisms = c.ExportRun(world="w", table=c.RUN_TABLE_ORGANISMS, format=c.TEXT_FORMAT_CSV)
-        first = client.call(export_run=organisms).export_part
-        self.assertFalse(first.last)
-        for wrong in (0, first.export_id + 1):
-            client.call(NOT_FOUND, continue_export=c.ContinueExport(export_id=wrong))
-        second = client.call(export_run=organisms).export_part
-        self.assertEqual(second.text, first.text)
-        client.call(NOT_FOUND, continue_export=c.ContinueExport(export_id=first.export_id))
-        client.call(continue_export=c.ContinueExport(export_id=second.export_id))
-        server.end()
 
     def test_without_files_there_is_nothing_to_export(self):
         client = self.client(self.server("--keep-nothing"))

@@ -50,13 +50,6 @@ class ForeignFiles(unittest.TestCase):
                 with self.subTest(arguments):
                     self.assert_refused(*arguments, words=f"{path}: this is {kind}, not {file}")
 
-    def test_a_sweep_refuses_an_endless_experiment(self):
-        sweep = self.folder / "sweep.json"
-        for path, kind in (self.pipe, "a pipe"), ("/dev/zero", "a device"):
-            sweep.write_text('{"experiment": "%s", "list": [{}]}' % path)
-            self.assert_refused("sweep", sweep, "--out", self.folder / "out",
-                                words=f"{path}: this is {kind}, not an experiment file")
-
     def assert_damaged(self, words):
         """Starts a server and ends it: it does not run the world of the file, and says why."""
         server = subprocess.Popen([EVOD, *map(str, self.serve())], stderr=subprocess.PIPE, text=True)
@@ -91,15 +84,6 @@ class ForeignFiles(unittest.TestCase):
                                     (["--tls-cert", certificate, "--tls-key", key, "--tls-client-ca", endless], endless,
                                      "a device")):
             self.assert_refused(*self.serve(*options), words=f"{path}: this is {kind}, not a PEM file")
-
-    def test_a_file_that_is_too_large_is_refused(self):
-        large = self.folder / "large"
-        with open(large, "wb") as file:
-            file.truncate(1 << 40)
-        for arguments, file, most in ((["check", large], "an experiment file", "1 MiB"),
-                                      (["run", "--population", large], "a population file", "1024 MiB"),
-                                      (["sweep", large, "--out", self.folder / "out"], "a sweep file", "1 MiB")):
-            self.assert_refused(*arguments, words=f"{large}: too large for {file} ({most} at most)")
 
     def test_sql_in_a_run_file_is_refused_and_not_run(self):
         server = subprocess.Popen([EVOD, *map(str, self.serve("--seed", "7"))], stderr=subprocess.PIPE, text=True)

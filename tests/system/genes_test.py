@@ -1,5 +1,5 @@
-"""Chromosomes of more than six genes as a user meets them: kills, forks, replays, tables, population files, sweeps and
-refusals. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes."""
+"""Chromosomes of more than six genes as a user meets them: their names, and population files. EVOD and EVOCTL
+name the programs, MESSAGES the folder of the message classes."""
 import csv
 import io
 import json
@@ -72,56 +72,6 @@ class Genes(access.Access):
         self.assertFalse(client.world("free").HasField("free_genes"))
         self.assertEqual(client.world("net").gene_names[6], "hidden1<food_bearing")
         self.assertEqual(client.world("net").gene_names[-1], "turn<bias")
-
-    def test_a_killed_server_continues_exactly(self):
-        server, client = self.begin()
-        for name in WORLDS:
-            client.call(set_parameters=plain.set_parameters(name, crossover="blend", reset_chance=0.02))
-        hashes = {name: client.world(name).state_hash for name in WORLDS}
-        server.process.kill()
-        waiting.ended(server.process)
-
-        server = self.serve("--speed", "max", "--threads", "3")
-        client = self.come(server)
-        for name in WORLDS:
-            self.assertEqual(client.world(name).state_hash, hashes[name])
-            client.call(fork_world=c.ForkWorld(world=name, name=f"{name}-now"))
-            client.call(fork_world=c.ForkWorld(world=name, name=f"{name}-before", at_generation=2))
-            later = client.run_to(500, name).state_hash
-            client.call(set_speed=c.SetSpeed(world=f"{name}-now", speed=w.Speed(max=True)))
-            self.assertEqual(client.run_to(500, f"{name}-now").state_hash, later)
-            client.run_to(130, f"{name}-before")
-            replay = client.call(open_replay=c.OpenReplay(world=name, at=c.RunMoment(tick=250))).world
-            self.assertEqual(client.wait_world(lambda world: world.tick == 250, replay.name).state_hash, hashes[name])
-            bred = client.call(get_breeding=c.GetBreeding(world=name, generation=4)).breeding
-            self.assertEqual(len(bred.descendants[-1].genes), GENES[name])
-        server.process.terminate()
-        self.assertEqual(waiting.ended(server.process), 0)
-        for name in WORLDS:
-            for run in (name, f"{name}-now", f"{name}-before"):
-                self.assertIn("everything agrees", evod("verify", f"{self.folder}/{run}.evod"))
-
-    def test_tables_and_bundles_contain_every_gene(self):
-        server, client = self.begin()
-        names = {name: list(client.world(name).gene_names) for name in WORLDS}
-        server.process.terminate()
-        self.assertEqual(waiting.ended(server.process), 0)
-        for name in WORLDS:
-            run = f"{self.folder}/{name}.evod"
-            population = rows_of(evod("export", run, "--what", "population", "--generation", 1))
-            self.assertEqual(list(population[0]), ["island", "organism", *names[name]])
-            statistics = rows_of(evod("export", run, "--what", "generations"))
-            for gene in names[name]:
-                mean = sum(float(row[gene]) for row in population[:12]) / 12
-                self.assertAlmostEqual(float(statistics[0][f"{gene}_mean"]), mean, places=3)
-                parts = [float(statistics[2][f"{gene}_{part}"])
-                         for part in ("selection", "transmission", "migration", "change")]
-                self.assertAlmostEqual(sum(parts[:3]), parts[3], delta=1e-9 * max(1, *map(abs, parts)))
-            bundle = pathlib.Path(self.folder, f"{name}-bundle")
-            evod("export", run, "--bundle", bundle)
-            self.assertEqual(rows_of((bundle / "generations.csv").read_text()), statistics)
-            experiment = json.loads((bundle / "experiment.json").read_text())
-            self.assertEqual({key: experiment[key] for key in WORLDS[name]}, WORLDS[name])
 
     def test_a_population_moves_between_worlds_by_file(self):
         server, client = self.begin()
@@ -209,46 +159,6 @@ class Genes(access.Access):
             path = self.file("one.csv", ",".join(values) + "\n" + ",".join(map(str, values.values())) + "\n")
             output = evod("run", setting, "--population", path, "--generations", 1, status=1 if said else 0)
             self.assertIn(said or "", output)
-
-    def test_a_sweep_varies_the_number_of_genes(self):
-        sweep = self.file("sweep.json", {"experiment": {**SMALL, "fitness": "gene_sum"},
-                                         "grid": {"free_genes": [0, 10]},
-                                         "replicates": 2, "seed": 7, "generations": 3})
-        evod("sweep", sweep, "--out", f"{self.folder}/out")
-        table = pathlib.Path(self.folder, "out/runs.csv").read_text()
-        rows = rows_of("\n".join(line for line in table.splitlines() if not line.startswith("#")))
-        self.assertEqual(len(rows), 2 * 2 * 3 * 2)
-        self.assertEqual({row["free_genes"] for row in rows}, {"0", "10"})
-
-    def test_wrong_genes_are_refused_by_name(self):
-        server, client = self.begin()
-        for words, field, allowed in (
-            (("free_genes=1001",), "free_genes: got 1001", "0 to 1000"),
-            (("mutate_group=brain",), "mutate_group: got brain", "all, body"),
-            (("free_gene_min=3",), "free_gene_max: got 1", "at least free_gene_min (3)"),
-            (("controller=network", "sense_food=false", "sense_poison=false"), "a network without inputs",
-             "at least one sense"),
-            (("controller=network", "brain_hidden=33"), "brain_hidden: got 33", "1 to 32"),
-            (("fitness=gene_sum", "population_size=200000", "free_genes=700"), "free_genes: got 200000 organisms",
-             "124000000"),
-        ):
-            said = self.evoctl("create", "wrong", "--set", *words, server=server, status=2)
-            self.assertIn(field, said)
-            self.assertIn(allowed, said)
-        said = self.evoctl("set", "--world", "free", "mutate_group=brain", server=server, status=2)
-        self.assertIn("all, body, free; their number changes at a reset", said)
-        refused = client.call(INVALID, create_world=c.CreateWorld(
-            name="wrong", parameters=plain.assignments(**WORLDS["free"]),
-            population=[population_of(6), population_of(6)])).status
-        self.assertRegex(" ".join(f"{v.field} {v.got} {v.allowed}" for v in refused.violations),
-                         r"population.*(72|6).*(192|16)")
-        refused = client.call(INVALID, place=c.Place(world="free", organisms=[
-            c.PlacedOrganism(x_px=100, y_px=100, genes=[100] * 6)])).status
-        self.assertRegex(" ".join(f"{v.field} {v.got} {v.allowed}" for v in refused.violations), r"genes.*6.*16")
-
-
-def population_of(genes):
-    return c.IslandPopulation(genes=[100] * genes * 12)
 
 
 if __name__ == "__main__":

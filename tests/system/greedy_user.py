@@ -224,10 +224,6 @@ AT_MAX = (lambda name: {"set_speed": c.SetSpeed(world=name, speed=w.Speed(max=Tr
           lambda name: {"run": c.Run(world=name)})
 
 
-def replays():
-    of_replays(replays_of("long", c.RunMoment(generation=1, tick=0), AT_MAX))
-
-
 def seeks():
     numbers = itertools.count()
 
@@ -239,36 +235,12 @@ def seeks():
          or counts["taken"] + counts["refused"] > 0)
 
 
-def exports():
-    def next_request(session, response):
-        part = response.export_part if response is not None else None
-        if part is not None and part.export_id and not part.last:
-            session.state["next_part"] = (time.monotonic() + 5, part.export_id)
-        when, export = session.state.get("next_part", (0.0, 0))
-        if export:
-            if time.monotonic() < when:
-                return None
-            session.state["next_part"] = (0.0, 0)
-            return {"continue_export": c.ContinueExport(export_id=export)}
-        if time.monotonic() < session.state.get("again", 0.0):
-            return None
-        session.state["again"] = time.monotonic() + 0.2
-        return {"export_run": c.ExportRun(world=world, table=c.RUN_TABLE_ORGANISMS, format=c.TEXT_FORMAT_CSV)}
-    of_sessions(next_request, taken=SESSIONS)
-
-
 def simulated_exports():
     """Exports of generations that have to be simulated again."""
     def next_request(*_):
         return {"export_run": c.ExportRun(world="sparse", table=c.RUN_TABLE_ORGANISMS, format=c.TEXT_FORMAT_CSV)}
     hold(lambda: Session(next_request), SESSIONS,
          lambda all: sum(session.unanswered for session in all) >= SESSIONS or counts["taken"] + counts["refused"] > 0)
-
-
-def breeding():
-    numbers = itertools.count()
-    of_sessions(lambda *_: {"get_breeding": c.GetBreeding(world="sparse", generation=1 + next(numbers) % 5)}, IN_FLIGHT,
-                taken=1)
 
 
 def queries():
@@ -278,38 +250,10 @@ def queries():
     of_sessions(lambda *_: dict(kinds[next(numbers) % len(kinds)]), IN_FLIGHT, taken=SESSIONS * IN_FLIGHT)
 
 
-def mailbox():
-    """Commands to own replays, and requests to live worlds, by so many sessions that one user could fill the
-    mailbox."""
-    def next_request(session, response):
-        if response is not None and response.HasField("world") and response.world.HasField("replay"):
-            session.replays = [response.world.name]
-        if not session.id:
-            return {"open_replay": c.OpenReplay(world="big")}
-        if session.id % 2 or not session.replays:
-            return {"get_statistics": c.GetStatistics(world="big")}
-        return {"set_speed": c.SetSpeed(world=session.replays[0], speed=w.Speed(real_time_factor=session.id % 7 + 1))}
-    of_sessions(next_request, 32, taken=40, number=40)
-
-
 def frames():
     """The longest messages that a viewer may send, with as many parts as possible."""
     parts = [w.ParameterAssignment()] * ((63 << 10) // 2)
     of_sessions(lambda *_: {"create_world": c.CreateWorld(name="x", parameters=parts)}, 4, taken=SESSIONS)
-
-
-def answers():
-    """Answers under more keys than the reply cache has."""
-    keys = itertools.count()
-
-    def next_request(session, response):
-        if response is not None and response.HasField("world") and response.world.HasField("replay"):
-            session.replays = [response.world.name]
-        if not session.id:
-            return {"open_replay": c.OpenReplay(world=world, at=c.RunMoment(generation=1))}
-        return {"pause": c.Pause(world=session.replays[0]),
-                "client_key": f"{next(keys):x}"} if session.replays else None
-    of_sessions(next_request, IN_FLIGHT, taken=2000)
 
 
 def memory():
@@ -342,8 +286,7 @@ def events():
 
 FAR = int(os.environ.get("FAR_TICK", 100))
 attacks = {attack.__name__: attack for attack in (
-    sessions, strangers, http, replays, seeks, exports, simulated_exports, breeding, queries, mailbox, frames, answers,
-                                                  memory, events)}
+    sessions, strangers, http, seeks, simulated_exports, queries, frames, memory, events)}
 if __name__ == "__main__":
     try:
         attacks[pool]()

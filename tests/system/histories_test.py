@@ -2,7 +2,7 @@
 EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes. tests/histories plays many more, in one
 process.
 
-    histories_test.py      HISTORIES (10) histories, the first with the seed HISTORIES_SEED (1); MPIRUN: some servers
+    histories_test.py      HISTORIES (6) histories, the first with the seed HISTORIES_SEED (1); MPIRUN: some servers
                            share their worlds between two processes
 """
 import os
@@ -13,7 +13,7 @@ import mpi_server_test as mpi
 import past_test as past
 from past_test import c, plain, w
 
-FIRST, COUNT = int(os.environ.get("HISTORIES_SEED", "1")), int(os.environ.get("HISTORIES", "10"))
+FIRST, COUNT = int(os.environ.get("HISTORIES_SEED", "1")), int(os.environ.get("HISTORIES", "6"))
 ACTIONS = 50
 WORLDS_MAX = 4
 VALUES = {  # of parameters that change while a world runs

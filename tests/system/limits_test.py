@@ -3,7 +3,8 @@ table says happens, and everybody else goes on. EVOD and EVOCTL name the program
 classes.
 
 Driven elsewhere: waiting_events_max by tests/unit/runtime/outbox_test.cpp, for nothing outside can hold the network's
-thread still; lease_s, with all about leases, and running out of file descriptors by protocol_*_test.py.
+thread still; answers_cached_max and client_keys_max by tests/unit/network/reply_cache_test.cpp; lease_s, with all about
+leases, and running out of file descriptors by protocol_*_test.py.
 """
 import contextlib
 import pathlib
@@ -28,7 +29,7 @@ program = pathlib.Path(access.EVOD).read_bytes()
 SLOW = b"__tsan_init" in program
 HELLO_S, STALLED_S = plain.limit("hello_timeout_s"), plain.limit("stalled_timeout_s")
 SANITIZED = SLOW or b"__asan_init" in program  # sanitizers change the memory use
-OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED = 0, 3, 5, 6, 8, 9, 12
+OK, INVALID, EXHAUSTED, PRECONDITION, UNIMPLEMENTED = 0, 3, 8, 9, 12
 
 
 def frame(message):
@@ -132,17 +133,6 @@ class Frames(Case):
         with self.meets(other, "control_frame_bytes_max"):
             longest.socket.sendall(b"EV\x01\x01" + struct.pack("<I", limits.control_frame_bytes_max + 1))
             self.closed_with_goodbye(longest, INVALID, str(limits.control_frame_bytes_max))
-
-    def test_a_declared_length_takes_no_memory(self):
-        server = self.serve()
-        other = self.come(server)
-        before = memory_kib(server)
-        clients = [self.come(server) for _ in range(100)]
-        for client in clients:
-            client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", 1 << 20) + b"x" * 1000)
-        other.call(list_worlds=c.ListWorlds())
-        if not SANITIZED:
-            self.assertLess(memory_kib(server) - before, 100 * 64)
 
     def test_nesting_depth(self):
         server = self.serve()
@@ -269,13 +259,6 @@ class Requests(Case):
             plain.until(lambda: codes(limit + 1) == [OK] * limit + [EXHAUSTED], "one too many")
         client.call(list_worlds=c.ListWorlds())
 
-    def test_requests_in_flight_may_stay_at_the_limit(self):
-        client = self.come(self.serve())
-        asked = [client.ask(describe=c.Describe()) for _ in range(client.welcome.limits.requests_in_flight_max)]
-        for _ in range(500):
-            self.assertEqual(client.response(asked.pop(0)).status.code, OK)
-            asked.append(client.ask(describe=c.Describe()))
-
     def test_an_address_has_half_of_the_mailbox(self):
         server = self.serve()
         admin = self.come(server)
@@ -382,28 +365,6 @@ class Requests(Case):
         client.call(client_key="k" * limits.client_key_bytes_max, pause=c.Pause(world="default"))
         with self.meets(client, "client_key_bytes_max"):
             client.call(INVALID, client_key="k" * (limits.client_key_bytes_max + 1), pause=c.Pause(world="default"))
-
-    def test_answers_kept_for_retries(self):
-        server = self.serve()
-        client = self.come(server)
-        limits = client.welcome.limits
-        first = client.call(client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
-        for i in range(2, limits.answers_cached_max + 1):
-            client.call(client_key="old", request_id=i, pause=c.Pause(world="default"))
-        again = client.call(client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
-        self.assertEqual(again, first)
-        client.call(client_key="old", request_id=limits.answers_cached_max + 1, pause=c.Pause(world="default"))
-        with self.meets(client, "answers_cached_max"):
-            client.call(PRECONDITION, client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
-        first = client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1))
-        for i in range(limits.client_keys_max // 2 - 2):  # and "old"; a user has half of the keys
-            client.call(client_key=f"key {i}", request_id=1, pause=c.Pause(world="default"))
-        self.assertEqual(client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1)),
-                         first)
-        with self.meets(client, "client_keys_max"):
-            for i in range(limits.client_keys_max):
-                client.call(client_key=f"another {i}", request_id=1, pause=c.Pause(world="default"))
-            client.call(PRECONDITION, client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1))
 
 
 class Worlds(Case):
@@ -519,28 +480,6 @@ class Unread(Case):
         self.assertLess(len(closed), 10)
         self.assertGreater(min(map(int, closed)), 1024)
         self.assertEqual(modest.response(modest.request_id).status.code, OK)  # sessions with little memory continue
-
-    @unittest.skipIf(SANITIZED, "its memory is not what it would be")
-    def test_a_burst_of_long_answers_keeps_the_memory_bound(self):
-        server = self.server("--keep-nothing")  # without the write queue of the disk
-        other = self.come(server)
-        limits = other.welcome.limits
-        self.world_of_short_generations(other, 1100, island_count=1)
-        asking = b"".join(frame(request(request_id=i + 1, get_history=c.GetHistory(world="short")))
-                          for i in range(limits.requests_in_flight_max))
-        answer_bytes = len(other.call(get_history=c.GetHistory(world="short")).SerializeToString())
-        fit = limits.client_buffer_bytes_max // 2 // (answer_bytes * limits.requests_in_flight_max)
-        clients = [self.small(server) for _ in range(fit + 10)]
-        pathlib.Path(f"/proc/{server.process.pid}/clear_refs").write_text("5")  # resets the peak
-        with self.meets(other, "client_buffer_bytes_max"):
-            for client in clients:
-                with contextlib.suppress(OSError):  # it may be one of the closed sessions
-                    client.socket.sendall(asking)
-            plain.until(lambda: "closed: the sessions of one user use more than" in server.output(), "one is closed")
-        status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text()
-        peak_mib = int(re.search(r"VmHWM:\s+(\d+)", status)[1]) >> 10
-        print(f"{peak_mib} MiB at the most", file=sys.stderr)
-        self.assertLess(peak_mib, (limits.client_buffer_bytes_max >> 20) + 64)
 
 
 class Times(Case):

@@ -2,20 +2,16 @@
 programs, MESSAGES the folder of the message classes."""
 import contextlib
 import ctypes
-import fcntl
 import http.client
 import json
 import os
 import pathlib
-import pty
 import re
 import resource
 import signal
 import socket
-import struct
 import subprocess
 import sys
-import termios
 import time
 import unittest
 
@@ -526,35 +522,6 @@ class Top(Case):
         top.send_signal(signal.SIGINT)
         self.assertEqual(waiting.ended(top), 0)
         top.stdout.close()
-
-    def test_on_a_terminal_it_is_drawn_over_itself_and_fits(self):
-        server = self.serve()
-        with self.client(server) as client:
-            for i in range(30):
-                client.call(create_world=c.CreateWorld(name=f"world-{i}"))
-        terminal, end = pty.openpty()
-        self.addCleanup(os.close, terminal)
-        fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-        top = subprocess.Popen([EVOCTL, "--server", f"127.0.0.1:{server.port}", "top", "--interval", "0.1"], stdout=end)
-        self.addCleanup(top.kill)
-        os.close(end)
-        drawn = b""
-        while drawn.count(b"\x1b[J") < 4:
-            drawn += os.read(terminal, 65536)
-        top.send_signal(signal.SIGINT)
-        self.assertEqual(waiting.ended(top), 0)
-        first, second = drawn.split(b"\x1b[J")[1:3]
-        lines = second.decode().replace("\r", "").split("\n")
-        # Anything before the next drawing overwrites all of this one.
-        self.assertRegex(lines[-1], r"^\x1b\[\d+A$")
-        self.assertEqual(int(lines[-1][2:-1]), len(lines) - 1)
-        self.assertLess(len(lines), 25)
-        self.assertLessEqual(max(len(line) for line in lines), 80)
-        self.assertTrue(any(re.match(r"and \d+ more", line) for line in lines), lines)
-
-    def test_a_server_that_does_not_answer_is_reported(self):
-        done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", "top", "--once"], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 3)
 
 
 class Log(Case):

@@ -1,22 +1,12 @@
 """Food, poison and organisms that are placed in a running world and removed from it, from evoctl to the run file. EVOD
 and EVOCTL name the programs, MESSAGES the folder of the message classes."""
-import json
 import pathlib
 import sys
 import unittest
 
 import access_test as access
 import waiting
-from access_test import EVOD, c, plain
-
-INVALID, PRECONDITION, ABORTED = 3, 9, 10
-GENES = [100, 100, 100, 100, 100, 100]
-
-
-def evod(*words, status=0):
-    done = waiting.run([EVOD, *words], capture_output=True, text=True)
-    assert done.returncode == status, f"{words}\n{done.stdout}\n{done.stderr}"
-    return done.stdout + done.stderr
+from access_test import c
 
 
 def food(x_px, y_px):
@@ -29,52 +19,6 @@ class Placing(access.Access):
         client = self.come(server)
         client.run_to(50, "default")
         return server, client
-
-    def test_a_killed_server_keeps_placed_items(self):
-        server, client = self.begin()
-        before = client.world("default").state_hash
-        placed = client.call(place=c.Place(world="default", items=[food(30, 40), food(50, 40)])).placed
-        self.assertEqual(len(placed.food), 2)
-        client.call(remove=c.Remove(world="default", generation=placed.generation, food=placed.food[:1], organisms=[0]))
-        here = client.world("default")
-        self.assertEqual(here.tick, 50)
-        self.assertNotEqual(here.state_hash, before)
-        server.process.kill()
-        waiting.ended(server.process)
-
-        server = self.serve("--speed", "max", "--threads", "3")
-        client = self.come(server)
-        self.assertEqual(client.world("default").state_hash, here.state_hash)
-        client.call(fork_world=c.ForkWorld(world="default", name="now"))
-        client.call(fork_world=c.ForkWorld(world="default", name="before", at_generation=1))
-        self.assertEqual(client.world("now").state_hash, here.state_hash)
-        later = client.run_to(200, "default").state_hash
-        self.assertEqual(client.run_to(200, "now").state_hash, later)
-        self.assertNotEqual(client.run_to(200, "before").state_hash, later)
-        replay = client.call(open_replay=c.OpenReplay(world="default", at=c.RunMoment(tick=200))).world
-        self.assertEqual(plain.until(lambda: client.world(replay.name).tick == 200 and client.world(replay.name),
-                                     "the replay").state_hash, later)
-        client.call(PRECONDITION, place=c.Place(world=replay.name, items=[food(30, 40)]))
-        server.process.terminate()
-        self.assertEqual(waiting.ended(server.process), 0)
-        for world in ("default", "now", "before"):
-            evod("verify", f"{self.folder}/{world}.evod")
-        events = evod("export", f"{self.folder}/default.evod", "--what", "events", "--format", "jsonl")
-        kinds = [json.loads(line)["kind"] for line in events.splitlines()]
-        self.assertIn("place", kinds)
-        self.assertIn("remove", kinds)
-
-    def test_wrong_fields_are_named_and_nothing_is_placed(self):
-        _, client = self.begin()
-        before = client.world("default").state_hash
-        refused = client.call(INVALID, place=c.Place(world="default", items=[food(30, 40), food(-3, 1e9)], organisms=[
-            c.PlacedOrganism(x_px=100, y_px=100, genes=[1e6] * 6)])).status
-        fields = [violation.field for violation in refused.violations]
-        self.assertEqual(fields[:2], ["place.items[1].x_px", "place.items[1].y_px"])
-        self.assertIn("place.organisms[0].body_size", fields)
-        refused = client.call(ABORTED, remove=c.Remove(world="default", generation=9, organisms=[0])).status
-        self.assertEqual(refused.reason, c.REASON_GENERATION_CHANGED)
-        self.assertEqual(client.world("default").state_hash, before)
 
     def test_clients_are_informed(self):
         _, client = self.begin()

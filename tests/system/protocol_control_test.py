@@ -4,7 +4,6 @@ Arguments as in plain_client.py.
 """
 import itertools
 import math
-import secrets
 import sys
 import time
 import unittest
@@ -37,16 +36,6 @@ class Commands(WithServer):
         answer = self.client.call(delete_world=c.DeleteWorld(world="a_World-1"))
         self.assertIsNone(answer.WhichOneof("answer"))
         self.client.call(NOT_FOUND, delete_world=c.DeleteWorld(world="a_World-1"))
-
-    def test_an_absent_seed_is_drawn_and_0_is_a_seed(self):
-        a, b, zero = self.new_world(seed=None), self.new_world(seed=None), self.new_world(seed=0)
-        self.assertNotEqual(self.client.world(a).seed, self.client.world(b).seed)
-        self.assertEqual(self.client.world(zero).seed, 0)
-
-    def test_an_empty_name_is_the_only_world_or_the_default_one(self):
-        self.assertEqual(self.client.call(pause=c.Pause()).world.name, "default")
-        self.new_world()
-        self.assertEqual(self.client.call(pause=c.Pause()).world.name, "default")
 
     def test_run_pause_resume_step(self):
         world = self.new_world(generation_s=0.5)  # 30 ticks
@@ -100,31 +89,6 @@ class Commands(WithServer):
         self.client.call(INVALID, set_speed=c.SetSpeed(world=world, speed=w.Speed(max=False)))
         self.assertTrue(self.client.world(world).speed.max)
 
-    def test_a_paced_world_keeps_its_pace_next_to_a_fast_one(self):
-        busy, paced = self.new_world(), self.new_world()
-        self.client.call(set_speed=c.SetSpeed(world=busy, speed=w.Speed(max=True)))
-        self.client.call(run=c.Run(world=busy))
-        self.client.call(run=c.Run(world=paced))
-        began, first = time.monotonic(), self.client.world(paced).tick
-        self.client.wait_world(lambda x: x.tick >= first + 90, paced)
-        self.assertGreater(time.monotonic() - began, 1.3)  # 90 ticks take at least 1.5 s
-        self.assertGreater(self.client.world(busy).tick, 1)
-        self.client.wait_world(lambda x: abs(x.ticks_per_s - 60) < 45, paced)  # unless the machine stalls
-
-    def test_only_the_same_seed_gives_the_same_hashes(self):
-        world = self.new_world(seed=42, generation_s=2)
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
-        first = [self.client.run_to(t, world).state_hash for t in (1, 100, 333)]
-        before = self.client.world(world)
-        reset = self.client.call(reset_world=c.ResetWorld(world=world)).world
-        self.assertEqual((reset.tick, reset.generation, reset.seed, reset.state), (0, 1, 42, w.RUN_STATE_WAITING))
-        self.assertNotEqual(reset.run_id, before.run_id)
-        self.assertTrue(reset.speed.max)
-        self.assertEqual([self.client.run_to(t, world).state_hash for t in (1, 100, 333)], first)
-        self.client.call(reset_world=c.ResetWorld(world=world, seed=43))
-        self.assertNotEqual(self.client.run_to(333, world).state_hash, first[-1])
-        self.assertEqual(self.client.world(world).seed, 43)
-
     def test_viewers_and_speed_change_nothing(self):
         parameters = {"generation_s": 2}
         watched, alone = self.new_world(seed=9, **parameters), self.new_world(seed=9, **parameters)
@@ -139,19 +103,6 @@ class Commands(WithServer):
             self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=400))
         hashes = {self.client.wait_world(lambda x: x.tick == 400, world).state_hash for world in (watched, alone)}
         self.assertEqual(len(hashes), 1)
-
-    def test_commands_to_an_ended_run_give_the_reason(self):
-        world = self.new_world(fitness="gene_sum", generation_limit=3)
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
-        self.client.call(run=c.Run(world=world))
-        ended = self.client.wait_world(lambda x: x.state == w.RUN_STATE_TERMINATED, world)
-        self.assertEqual((ended.generation, ended.outcome), (3, w.OUTCOME_GENERATION_LIMIT))
-        for request in ({"run": c.Run(world=world)}, {"resume": c.Resume(world=world)},
-                        {"run_until_tick": c.RunUntilTick(world=world, tick=1 << 30)}):
-            status = self.client.call(PRECONDITION, **request).status
-            self.assertIn("generation_limit", status.message)
-        self.client.call(set_parameters=set_parameters(world, generation_limit=5))  # and it continues
-        self.client.wait_world(lambda x: x.state == w.RUN_STATE_TERMINATED and x.generation == 5, world)
 
 
 class Control(WithServer):
@@ -221,47 +172,6 @@ class Control(WithServer):
         self.next_control(self.OF_SERVER)
         self.client.wait_world(lambda x: x.tick > tick, self.name)
 
-    def test_a_lease_can_be_given_back(self):
-        def give_back(_):
-            tick = self.borrow()
-            self.wait_standing(tick)
-            back = self.client.call(release_lease=c.ReleaseLease(world=self.name)).world
-            self.assertEqual((back.leased, back.state, back.tick), (False, w.RUN_STATE_RUNNING, tick))
-        self.while_lent(give_back)
-        self.renew(PRECONDITION)
-        again = self.client.call(release_lease=c.ReleaseLease(world=self.name)).world
-        self.assertEqual(again.state, w.RUN_STATE_RUNNING)
-
-    def test_a_goal_in_generations_is_still_there_after_a_lease(self):
-        self.client.call(run=c.Run(world=self.name, generations=1 << 40))
-        goal = self.client.world(self.name).run_until_generation
-        self.borrow()
-        back = self.client.call(release_lease=c.ReleaseLease(world=self.name)).world
-        self.assertEqual((back.run_until_generation, back.HasField("run_until_tick")), (goal, False))
-
-    def test_another_clients_command_ends_the_lease(self):
-        for request, state in (({"pause": c.Pause(world=self.name)}, w.RUN_STATE_PAUSED),
-                               ({"resume": c.Resume(world=self.name)}, w.RUN_STATE_RUNNING),
-                               ({"run": c.Run(world=self.name)}, w.RUN_STATE_RUNNING)):
-            self.client.call(run=c.Run(world=self.name))
-            self.borrow()
-            answer = self.other.call(**request).world
-            self.assertEqual((answer.leased, answer.state), (False, state))
-            self.renew(PRECONDITION)
-
-    def test_another_client_that_steps_takes_the_lease(self):
-        def take_over(_):
-            self.borrow()
-            self.assertTrue(self.other.call(run_until_tick=c.RunUntilTick(world=self.name, tick=0)).world.leased)
-            self.renew(client=self.other)
-        self.while_lent(take_over)
-        self.renew(PRECONDITION)
-
-    def test_a_world_paused_before_stays_paused(self):
-        paused = self.client.call(pause=c.Pause(world=self.name)).world
-        self.assertFalse(self.client.run_to(paused.tick + 5, self.name).leased)
-        self.renew(PRECONDITION)
-
     def test_all_see_one_order_of_two_controllers(self):
         rounds, clients = 200, [self.client, self.other]
         listeners = [self.enterContext(Client(self.server)) for _ in range(2)]
@@ -286,22 +196,6 @@ class Control(WithServer):
             self.assertEqual((changed.revision, event.tick), (revision, answer.applied_tick))
             self.assertEqual(changed.changed[0].value, as_dict(answer.parameters)["food_health"].value)
         self.assertEqual([e.tick for e in seen[0]], sorted(e.tick for e in seen[0]))
-
-    def test_a_world_too_fast_for_the_machine_is_slowed(self):
-        world = self.new_world("crowd" + secrets.token_hex(4), population_size=2000, scale_with_population=True)
-        self.client.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=60))
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=10000)))
-        self.client.call(run=c.Run(world=world))
-        self.assertFalse(self.client.next_snapshot().slowed)
-        slowed = self.client.next_snapshot(lambda snapshot: snapshot.slowed)
-        self.assertTrue(self.client.world(world).slowed)
-        self.client.next_snapshot(lambda snapshot: snapshot.tick > slowed.tick)  # it continues
-        paused = self.client.call(pause=c.Pause(world=world)).world
-        self.assertFalse(self.client.world(world).slowed)
-        # No tick was skipped: an unhurried run gives the same result.
-        twin = self.new_world(population_size=2000, scale_with_population=True)
-        self.client.call(set_speed=c.SetSpeed(world=twin, speed=w.Speed(max=True)))
-        self.assertEqual(self.client.run_to(paused.tick, twin).state_hash, paused.state_hash)
 
 
 class Parameters(WithServer):
@@ -334,30 +228,6 @@ class Parameters(WithServer):
             self.refused(food_health=30.0, mutation_chance=1.5, selection="best", mutate_chance=0.1, tick_s=math.nan),
             {"set_parameters." + n for n in ("mutation_chance", "selection", "mutate_chance", "tick_s")})
 
-    def test_a_missing_value_and_a_repeated_name_are_faults(self):
-        bad = c.SetParameters(world=self.world, parameters=[
-            w.ParameterAssignment(name="mutation_step"), w.ParameterAssignment(name="elite_count",
-                                                                               value=w.ParameterValue()),
-            *assignments(mutation_chance=7.0)])
-        status = self.client.call(INVALID, set_parameters=bad).status
-        self.assertEqual({v.field for v in status.violations},
-                         {"set_parameters." + n for n in ("mutation_step", "elite_count", "mutation_chance")})
-        twice = c.SetParameters(world=self.world, parameters=assignments(food_health=1.0) +
-                                assignments(food_health=2.0))
-        self.assertEqual(self.client.call(INVALID, set_parameters=twice).status.violations[0].got, "given twice")
-
-    def test_values_that_do_not_go_together_are_refused(self):
-        self.assertEqual(self.refused(initial_gene_min=200.0), {"set_parameters.initial_gene_max"})
-
-    def test_a_misspelt_name_gets_a_suggestion(self):
-        status = self.client.call(INVALID, set_parameters=set_parameters(self.world, mutation_chanse=0.1)).status
-        self.assertIn("mutation_chance", status.violations[0].allowed)
-
-    def test_a_hundred_thousand_assignments_are_refused_quickly(self):
-        many = c.SetParameters(world=self.world, parameters=[w.ParameterAssignment(name="x")] * 100_000)
-        status = self.client.call(INVALID, set_parameters=many).status
-        self.assertEqual([v.field for v in status.violations], ["set_parameters.parameters"])
-
     def test_current_and_pending_values_are_shown(self):
         answer = self.client.call(set_parameters=set_parameters(
             self.world, food_health=31.0, population_size=60, island_count=2, steering_lookahead_s=1))
@@ -373,13 +243,6 @@ class Parameters(WithServer):
         after = as_dict(self.get())
         self.assertEqual((after["population_size"].value.count, after["population_size"].HasField("pending")),
                          (60, False))
-
-    def test_a_dry_run_answers_and_changes_nothing(self):
-        before = self.get()
-        answer = self.client.call(set_parameters=set_parameters(self.world, dry_run=True, food_health=99.0))
-        self.assertEqual(as_dict(answer.parameters)["food_health"].value.real, 99)
-        self.assertEqual(self.get(), before)
-        self.client.call(INVALID, set_parameters=set_parameters(self.world, dry_run=True, food_health=-1.0))
 
     def test_compare_and_set(self):
         revision = self.get().revision
@@ -410,26 +273,6 @@ class Resending(WithServer):
         self.client.call(delete_world=c.DeleteWorld(world="once"))
         self.assertEqual(self.again(self.client, request), first)
         self.client.call(NOT_FOUND, get_parameters=c.GetParameters(world="once"))
-
-    def test_a_refusal_by_the_world_is_kept_too(self):
-        world = self.new_world()
-        request = c.Request(request_id=1, client_key="retry-resume", resume=c.Resume(world=world))
-        first = self.again(self.client, request)
-        self.assertEqual(first.status.code, PRECONDITION)
-        self.client.call(run=c.Run(world=world))
-        self.assertEqual(self.again(self.client, request), first)
-
-    def test_an_invalid_request_may_be_corrected_with_its_id(self):
-        world = self.new_world()
-        self.client.call(INVALID, request_id=900, run=c.Run(world=world, generations=0))
-        self.client.call(request_id=900, run=c.Run(world=world, generations=1))
-
-    def test_a_request_id_cannot_be_reused(self):
-        self.client.call(request_id=5, client_key="retry-different", run_until_tick=c.RunUntilTick(tick=0))
-        status = self.client.call(INVALID, request_id=5, client_key="retry-different",
-                                  run_until_tick=c.RunUntilTick(tick=1)).status
-        self.assertEqual([v.field for v in status.violations], ["request_id"])
-        self.client.call(request_id=5, client_key="retry-other-key", pause=c.Pause())
 
     def test_a_reconnecting_client_gets_its_answer(self):
         request = c.Request(request_id=1, client_key="retry-gone", create_world=c.CreateWorld(name="gone"))
@@ -473,24 +316,6 @@ class Events(WithServer):
         self.client.call(delete_world=c.DeleteWorld(world="brief"))
         following = [self.watcher.next_event(kind) for kind in ("world_created", "world_deleted")]
         self.assertEqual({e.world for e in following}, {"brief"})
-
-    def test_a_subscription_to_a_world_gets_only_its_events(self):
-        mine, other = self.new_world(), self.new_world()
-        self.subscribe(mine)
-        self.client.call(pause=c.Pause(world=other))
-        self.client.call(pause=c.Pause(world=mine))
-        self.watcher.next_event("run_control_changed")
-        self.client.call(run=c.Run(world=mine))
-        self.watcher.next_event("run_control_changed")
-        self.assertEqual([e.world for e in self.watcher.events], [])
-
-    def test_a_reached_goal_causes_an_event(self):
-        world = self.new_world()
-        self.subscribe(world)
-        self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=5))
-        event = self.watcher.next_event("run_control_changed",
-                                        lambda e: e.run_control_changed.by.kind == w.ACTOR_KIND_GOAL)
-        self.assertEqual((event.tick, event.run_control_changed.world.state), (5, w.RUN_STATE_PAUSED))
 
     def test_generations_migrations_and_the_end_of_a_run(self):
         world = self.new_world(fitness="gene_sum", island_count=3, migration="ring", migration_epoch=2, migrant_count=2,

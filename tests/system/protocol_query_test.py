@@ -11,9 +11,8 @@ import unittest
 
 import numpy
 
-import waiting
 from plain_client import (
-    EXHAUSTED, INVALID, NOT_FOUND, Client, columns, limit, WithServer, c, stream_pb2, w,
+    INVALID, NOT_FOUND, Client, columns, WithServer, c, stream_pb2, w,
 )
 
 
@@ -79,26 +78,6 @@ class Snapshots(WithServer):
         self.viewer.call(list_worlds=c.ListWorlds())
         self.assertEqual(self.viewer.snapshots, [])  # the world is idle
 
-    def test_a_new_viewer_sees_a_paused_world(self):
-        world = self.new_world()
-        self.subscribe(world)
-        self.viewer.next_snapshot()
-        with Client(self.server) as newcomer:
-            newcomer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=1))
-            self.assertEqual(newcomer.next_snapshot().tick, 0)
-
-    def test_changes_are_shown_at_once_however_low_the_rate(self):
-        world = self.new_world()
-        self.subscribe(world, 0.001)
-        self.viewer.next_snapshot()
-        for request in ({"run_until_tick": c.RunUntilTick(world=world, tick=3)},
-                        {"reset_world": c.ResetWorld(world=world)},
-                        {"set_speed": c.SetSpeed(world=world, speed=w.Speed(max=True))}):
-            answer = self.client.call(**request).world
-            self.viewer.next_snapshot(lambda p: p.run_id.hex() == answer.run_id and p.speed == answer.speed)
-        self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=9))
-        self.viewer.next_snapshot(lambda p: p.tick == 9 and p.state == w.RUN_STATE_PAUSED)
-
     def test_islands_alone_and_together(self):
         world = self.new_world(island_count=3)
         everyone, one = self.subscribe(world), self.subscribe(world, island=2)
@@ -122,45 +101,12 @@ class Snapshots(WithServer):
                                                                                         rate_hz=rate)).status
             self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots.rate_hz"])
 
-    def test_no_more_subscriptions_than_the_limit(self):
-        world = self.new_world()
-        limit = self.viewer.welcome.limits.subscriptions_max
-        ids = [self.subscribe(world).subscription_id for _ in range(limit)]
-        self.viewer.call(EXHAUSTED, subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=1))
-        self.viewer.call(EXHAUSTED, subscribe_events=c.SubscribeEvents())
-        self.viewer.call(unsubscribe=c.Unsubscribe(subscription_id=ids[0]))
-        self.viewer.call(subscribe_events=c.SubscribeEvents())
-
     def test_a_fitness_of_genes_alone_has_empty_snapshots(self):
         world = self.new_world(fitness="rastrigin")
         self.subscribe(world)
         snapshot = self.viewer.next_snapshot()
         self.assertEqual((snapshot.organism_count, len(snapshot.plain.organisms.id)), (0, 0))
         self.assertGreater(snapshot.width_px, 0)
-
-    def test_a_wide_island_has_wide_positions(self):
-        world = self.new_world(island_width_px=5000.0)
-        self.subscribe(world)
-        snapshot = self.viewer.next_snapshot()
-        self.assertGreater(columns(snapshot)["food"]["x"].max(), 1280)
-
-    def test_a_slow_viewer_gets_the_newest_and_a_drop_count(self):
-        world = self.new_world(food_count=50_000, island_width_px=4000.0, island_height_px=4000.0)  # 400 KB each
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
-
-        def watch_slowly(_):
-            with Client(self.server) as viewer, Client(self.server) as reader:
-                for one in (viewer, reader):
-                    one.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
-                self.client.call(run=c.Run(world=world))
-                for _ in range(20):  # 8 MB, more than fits between the programs
-                    reader.next_snapshot()
-                paused = self.client.call(pause=c.Pause(world=world)).world
-                newest = reader.next_snapshot(lambda p: p.tick == paused.tick)
-                snapshot = viewer.next_snapshot(lambda p: p.tick == paused.tick)
-            self.assertGreater(snapshot.dropped_count, 0)
-            self.assertEqual(snapshot.plain, newest.plain)
-        waiting.quicker_than(self.client.welcome.limits.stalled_timeout_s, watch_slowly)
 
     def test_a_viewer_that_dies_in_mid_snapshot_leaves_no_trace(self):
         world = self.new_world(food_count=50_000, island_width_px=4000.0, island_height_px=4000.0)
@@ -206,18 +152,6 @@ class Queries(WithServer):
         after = self.client.call(get_statistics=c.GetStatistics(world=world)).statistics
         self.assertEqual((after.world.generation, after.last[0].generation, after.last[0].end_tick), (2, 1, 60))
         self.assertGreaterEqual(after.last[0].fitness_best, after.last[0].fitness_mean)
-
-    def test_organisms_of_a_second_generation_have_parents(self):
-        world = self.new_world(generation_s=1)
-        first = self.client.call(get_organism=c.GetOrganism(world=world, organism=49)).organism
-        self.assertEqual((first.id, first.generation, len(first.genes), len(first.parents)), (49, 1, 6, 0))
-        self.client.run_to(61, world)
-        child = self.client.call(get_organism=c.GetOrganism(world=world, organism=49)).organism
-        self.assertEqual(child.generation, 2)
-        self.assertIn(len(child.parents), (1, 2))
-        status = self.client.call(NOT_FOUND, get_organism=c.GetOrganism(world=world, organism=50)).status
-        self.assertEqual([(v.field, v.allowed) for v in status.violations], [("get_organism.organism", "0 to 49")])
-        self.client.call(NOT_FOUND, get_organism=c.GetOrganism(world=world, island=1))
 
     def population(self, world, island=0, first=0, client=None):
         """A part of a population, with its columns as arrays."""
@@ -281,33 +215,6 @@ class Queries(WithServer):
                 world=world, island=island, first_organism=first)).status
             self.assertEqual([(v.field, v.allowed) for v in status.violations], [("get_population." + field, allowed)])
 
-    def test_a_population_without_bodies_has_nothing_to_do(self):
-        world = self.new_world(fitness="gene_sum")
-        answer = self.population(world)
-        self.assertEqual(answer.genes.shape, (6, 50))
-        self.assertEqual(set(answer.choices), {w.CHOICE_UNSPECIFIED})
-        self.assertEqual(self.client.call(get_motion=c.GetMotion(world=world)).motion.body_count, 0)
-
-    def test_organisms_do_what_was_predicted(self):
-        world = self.new_world(respawn=False)
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
-        for tick in (0, 60, 300):
-            self.client.run_to(tick, world)
-            organisms = lambda: [self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
-                                 for i in range(50)]
-            before, answer = organisms(), self.population(world)
-            self.client.run_to(tick + 1, world)
-            pushed = [(i, o) for i, o in enumerate(organisms()) if o.alive and before[i].alive]
-            self.assertGreater(len(pushed), 30)
-            as_predicted = sum(
-                math.isclose(o.velocity_x_px_s, 0.999 * (before[i].velocity_x_px_s + answer.forces[0,
-                                                                                                   i] / o.mass_kg / 60),
-                             rel_tol=1e-4, abs_tol=1e-4) and
-                math.isclose(o.velocity_y_px_s, 0.999 * (before[i].velocity_y_px_s + answer.forces[1,
-                                                                                                   i] / o.mass_kg / 60),
-                             rel_tol=1e-4, abs_tol=1e-4) for i, o in pushed)
-            self.assertGreaterEqual(as_predicted, 0.8 * len(pushed), "all but those that have bounced")
-
     def test_a_large_population_comes_in_parts(self):
         rows = self.client.welcome.limits.population_rows_max
         world = self.new_world(population_size=2 * rows + 7, fitness="gene_sum")
@@ -348,23 +255,6 @@ class Queries(WithServer):
         self.assertAlmostEqual(answer.deepest_overlap_px, max(depths), places=3)
         self.assertGreaterEqual(answer.cell_px, 2 * max(o.radius_px for o in alive))
         self.client.call(NOT_FOUND, get_motion=c.GetMotion(world=world, island=1))
-
-    def test_ticks_too_long_for_their_speeds_are_counted(self):
-        world = self.new_world(tick_s=0.05, max_speed_px_s=3000, force_per_unit=100, respawn=False)
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
-        self.client.run_to(60, world)
-        answer = self.client.call(get_motion=c.GetMotion(world=world)).motion
-        self.assertGreater(answer.too_fast_count, 0)
-        self.assertGreater(answer.fastest_step_share, 1)
-
-    def test_the_dead_can_be_asked_about(self):
-        world = self.new_world(food_count=0, poison_count=0, generation_s=600)
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
-        self.client.call(run=c.Run(world=world, generations=1))
-        self.client.wait_world(lambda x: x.state == w.RUN_STATE_WAITING, world)
-        dead = self.client.call(get_organism=c.GetOrganism(world=world)).organism
-        self.assertEqual((dead.alive, dead.health, dead.cause_of_death), (False, 0, w.CAUSE_OF_DEATH_STARVED))
-        self.assertGreater(dead.lived_s, 10)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,8 @@
 
 Each test is one pool that all clients share. Eve, a viewer, takes all of it that she gets, and keeps it
 (greedy_user.py). Meanwhile Ada, a controller, does one of everything: each request of hers is answered right, at the
-first attempt.
+first attempt. Pools that are only places in a table have unit tests alone: exports, replays and running breedings
+(background_queries_test, replay_places_test), the mailbox (mailbox_test) and the reply cache (reply_cache_test).
 """
 import contextlib
 import http.client
@@ -26,10 +27,9 @@ GREEDY_USER = str(pathlib.Path(__file__).with_name("greedy_user.py"))
 SESSIONS_MAX, FAR_TICK = 64, 100_000
 MEMORY_BYTES = plain.limit("client_buffer_bytes_max") + (128 << 20)  # docs/OPERATIONS.md
 POOLS = {  # what each attack of greedy_user.py takes, and the address of Ada, who otherwise shares that of Eve
-    "sessions": "127.0.0.1", "strangers": "127.0.0.2", "http": "127.0.0.2", "replays": "127.0.0.1",
-         "seeks": "127.0.0.1",
-    "exports": "127.0.0.1", "simulated_exports": "127.0.0.1", "breeding": "127.0.0.1", "queries": "127.0.0.1",
-    "mailbox": "127.0.0.1", "frames": "127.0.0.1", "answers": "127.0.0.1", "memory": "127.0.0.1", "events": "127.0.0.1"}
+    "sessions": "127.0.0.1", "strangers": "127.0.0.2", "http": "127.0.0.2", "seeks": "127.0.0.1",
+    "simulated_exports": "127.0.0.1", "queries": "127.0.0.1", "frames": "127.0.0.1", "memory": "127.0.0.1",
+    "events": "127.0.0.1"}
 
 
 class Client(past.Client):
@@ -136,16 +136,13 @@ class Ada:
     """A user who does one of everything. As a context manager: her session, which is open before the attack."""
 
     def __init__(self, ground, server, pool):
-        self.ground, self.server, self.pool, self.come_from = ground, server, pool, POOLS[pool]
+        self.ground, self.server, self.come_from = ground, server, POOLS[pool]
         self.key, self.commands = secrets.token_hex(8), 0
         self.session = self.open_session()
 
     def __enter__(self):
         self.session.call(subscribe_events=c.SubscribeEvents())
         self.session.call(run=c.Run(world="live"))
-        if self.pool == "mailbox":  # a tick of a large world takes long, so requests wait
-            self.session.call(set_speed=c.SetSpeed(world="big", speed=w.Speed(max=True)))
-            self.session.call(run=c.Run(world="big"))
         self.first = self.command(self.session, 1)
         return self
 
@@ -250,32 +247,17 @@ class Pools(unittest.TestCase):
     def test_http_connections(self):
         self.attacked("http")
 
-    def test_replays(self):
-        self.attacked("replays")
-
     def test_seeks(self):
         self.attacked("seeks")
-
-    def test_exports(self):
-        self.attacked("exports")
 
     def test_exports_of_simulated_generations(self):
         self.attacked("simulated_exports")
 
-    def test_breeding_queries(self):
-        self.attacked("breeding")
-
     def test_queries(self):
         self.attacked("queries")
 
-    def test_requests_in_the_mailbox(self):
-        self.attacked("mailbox")
-
     def test_the_time_for_long_messages(self):
         self.attacked("frames")
-
-    def test_cached_answers(self):
-        self.attacked("answers")
 
     def test_memory(self):
         self.attacked("memory", MEMORY_BYTES)

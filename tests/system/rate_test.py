@@ -1,5 +1,5 @@
-"""Fitness from clients without the Python package: evoctl, a plain client, a kill, and the commands that need no
-network. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes."""
+"""Fitness from clients without the Python package: evoctl, and the commands that need no network. EVOD and EVOCTL name
+the programs, MESSAGES the folder of the message classes."""
 import json
 import pathlib
 import sys
@@ -9,7 +9,6 @@ import access_test as access
 import waiting
 from access_test import EVOD, c, plain
 
-INVALID = 3
 SETTING = {"fitness": "external", "external_bodies": False, "population_size": 4, "island_count": 2}
 
 
@@ -61,33 +60,6 @@ class Rating(access.Access):
                            "its end")
         self.assertEqual([(s.fitness_best, s.best_organism) for s in last], [(3000, 2), (3000, 2)])
         self.waiting_world(client)
-
-    def test_a_killed_server_waits_as_before(self):
-        server, client = self.begin()
-        client.call(set_fitness=c.SetFitness(world="rated", generation=1, island=1, fitness=[1, 2]))
-        before = client.world("rated")
-        server.process.kill()
-        waiting.ended(server.process)
-        server = self.serve("--speed", "max")
-        client = self.come(server)
-        world = client.world("rated")
-        self.assertEqual((world.state_hash, world.state, world.run_until_generation),
-                         (before.state_hash, plain.w.RUN_STATE_RUNNING, before.run_until_generation))
-        self.assertEqual(list(world.awaited_fitness.islands), [0, 1])
-        client.call(set_fitness=c.SetFitness(world="rated", generation=1, island=1, first_organism=2, fitness=[3, 4]))
-        client.call(INVALID, set_fitness=c.SetFitness(world="rated", generation=1, island=0, first_organism=1,
-                                                      fitness=[3]))
-        for generation in (1, 2):
-            plain.until(lambda: client.world("rated").awaited_fitness.generation == generation, "the next generation")
-            for island in client.world("rated").awaited_fitness.islands:
-                client.call(set_fitness=c.SetFitness(world="rated", generation=generation, island=island,
-                                                     fitness=[0, 1, 2, 3]))
-        self.assertEqual(client.world("rated").state, plain.w.RUN_STATE_WAITING)
-        server.process.terminate()
-        self.assertEqual(waiting.ended(server.process), 0)
-        evod("verify", f"{self.folder}/rated.evod")
-        rows = evod("export", f"{self.folder}/rated.evod", "--what", "organisms", "--format", "jsonl").splitlines()
-        self.assertEqual([json.loads(row)["fitness"] for row in rows][4:8], [1, 2, 3, 4])
 
     def test_commands_without_network_refuse_it_at_the_start(self):
         sweep = self.file("sweep.json", json.dumps({"experiment": SETTING, "grid": {"elite_count": [0, 1]},

@@ -137,18 +137,6 @@ class Verify(Case):
                 self.assertRegex(said, r" state hashes, 0 checkpoints compared in \d+\.\d\d s, \d+(\.\d)? × real "
                                        r"time\n$")
 
-    def test_a_run_agrees_while_it_is_written_and_after_a_kill(self):
-        server = Server(self.folder, 4)
-        try:
-            server.evoctl("run")
-            server.evoctl("set", "mutation_chance=0.3")
-            for _ in range(3):
-                self.assertIn("everything agrees", evod("verify", server.run))
-                server.evoctl("set", "food_health=20")
-        finally:
-            server.end(signal.SIGKILL, -signal.SIGKILL)
-        self.assertIn("everything agrees", evod("verify", server.run))
-
     def test_a_reset_run_and_the_next_one_agree(self):
         with Server(self.folder, 5) as server:
             server.evoctl("until", "150", "--wait")
@@ -161,26 +149,6 @@ class Verify(Case):
         self.assertEqual(len(runs), 2)
         self.assertIn("2 generations, 150 ticks", evod("verify", runs[0]))
         self.assertIn("3 generations, 300 ticks", evod("verify", runs[1]))
-
-    def test_damage_is_reported(self):
-        for statement, words in {
-            "UPDATE outcome SET fitness = zeroblob(96) WHERE generation = 3 AND island = 1": "outcome of generation 3",
-            "UPDATE population SET chromosomes = zeroblob(288) WHERE generation = 2": "population of generation 2",
-            "UPDATE state_hash SET low = low + 1 WHERE tick = 120": "row 120 of its table state_hash",
-            "DELETE FROM journal WHERE number = 1": "row 1 of its table journal",
-        }.items():
-            with self.subTest(statement):
-                self.assertIn(words, evod("verify", self.copy(plain, statement), status=1))
-        path = self.copy(plain)
-        with open(path, "r+b") as file:
-            content = file.read()
-            # A byte of a chromosome: the third generation's first.
-            (genes,) = sqlite3.connect(path).execute(
-                "SELECT chromosomes FROM population WHERE generation = 3 AND island = 0").fetchone()
-            place = content.index(genes[:32])
-            file.seek(place)
-            file.write(bytes([content[place] ^ 1]))
-        self.assertIn("is damaged: the population of generation 3 on island 0", evod("verify", path, status=1))
 
     def test_a_row_of_another_run_is_reported_with_its_moment(self):
         for table, where, moment, part, agrees in (
@@ -441,17 +409,6 @@ class Export(Case):
         damaged = self.copy(plain, "UPDATE statistics SET alive_count = 99 WHERE generation = 2")
         evod("export", damaged, "--bundle", self.folder + "/half", status=1)
         self.assertFalse(os.path.exists(self.folder + "/half"))
-
-    def test_a_fork_begins_at_the_end_by_default(self):
-        with tempfile.TemporaryDirectory() as data:
-            said = evod("fork", plain, "--name", "f", "--data", data)
-            self.assertRegex(said, r"begins with (tick \d+ of )?generation \d+ of ")
-            with sqlite3.connect(f"file:{plain}?mode=ro", uri=True) as run:
-                (last,) = run.execute("SELECT tick FROM end_mark").fetchone()
-            with sqlite3.connect(f"file:{data}/f.evod?mode=ro", uri=True) as run:
-                (first,) = run.execute("SELECT value FROM run WHERE key = 'first_tick'").fetchone()
-            self.assertEqual(first, str(last))
-            self.assertIn("everything agrees", evod("verify", f"{data}/f.evod"))
 
     def test_a_fork_is_created_in_the_folder_of_its_file(self):
         with tempfile.TemporaryDirectory() as folder:

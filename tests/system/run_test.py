@@ -8,7 +8,6 @@ import os
 import pathlib
 import random
 import re
-import shutil
 import signal
 import subprocess
 import tempfile
@@ -121,35 +120,6 @@ class Run(Recorded):
         self.assertEqual(done.stdout, f"seed 7\n{self.plain_file} is complete: 12 generations\n")
         self.assertEqual(self.csv.read_bytes(), self.plain_csv.read_bytes())
         self.assertEqual(self.plain_file.read_bytes(), before)
-
-    def test_another_run_is_refused(self):
-        self.run_and_kill(rows_first=8)
-        shutil.copytree(self.folder, self.folder / "copy")
-        for change, difference in ((["--seed", 8], "its seed is 7, not 8"),
-                                   (["--set", "food_count=3"], "its food_count is 100, not 3"),
-                                   (["--set", "mutation_chance=0.3"], "its schedule"),
-                                   (["--generations", 13], "its generation_limit is 12, not 13")):
-            done = evod("run", self.ring, "--run-file", self.file, *change, status=1)
-            self.assertIn(f"{self.file} contains another run: ", done.stderr)
-            self.assertIn(difference, done.stderr)
-            self.assertEqual(done.stdout, "")
-        for path in self.folder.glob("ring.evod*"):
-            if not path.name.endswith(("-shm", "-lock")):
-                self.assertEqual(path.read_bytes(), (self.folder / "copy" / path.name).read_bytes(), path.name)
-        shutil.rmtree(self.folder / "copy")
-        self.run_to_end()
-        self.expect_whole()
-
-    def test_other_files_are_refused(self):
-        self.file.write_text("generation,island\n" * 100)
-        done = evod("run", self.ring, "--run-file", self.file, status=1)
-        self.assertIn(str(self.file), done.stderr)
-        self.assertEqual(self.file.read_text(), "generation,island\n" * 100)
-        self.file.unlink()
-        self.file.mkdir()
-        self.assertIn(str(self.file), evod("run", self.ring, "--run-file", self.file, status=1).stderr)
-        self.assertIn("nowhere", evod("run", self.ring, "--run-file", self.folder / "nowhere" / "a.evod",
-                                      status=1).stderr)
 
     def test_a_seed_that_was_drawn_is_kept(self):
         words = ["run", "--set", "population_size=10", "--set", "generation_s=1", "--generations", "400", "--run-file",

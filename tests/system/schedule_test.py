@@ -12,7 +12,6 @@ from access_test import EVOD, c, plain
 
 SCHEDULED = {"population_size": {"1": 12, "4": 20}, "generation_s": 0.5, "mutation_chance": {"1": 0.5, "3": 0.05},
              "food_health": {"2": 60, "5": 5}, "seed": 3}
-INVALID, PRECONDITION = 3, 9
 
 
 def evod(*words, status=0):
@@ -84,56 +83,6 @@ class Schedules(access.Access):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("other schedule of parameters", refused.stdout + refused.stderr)
 
-    def test_evoctl_create_set_overrides_the_schedule(self):
-        server = self.serve("--speed", "max")
-        self.evoctl("create", "first", "--experiment", self.file, server=server)
-        self.evoctl("create", "second", "--experiment", self.file, "--set", "food_health=9", server=server)
-        client = self.come(server)
-        for world in ("first", "second"):
-            client.call(set_speed=c.SetSpeed(world=world, speed=plain.w.Speed(max=True)))
-            client.call(run=c.Run(world=world, generations=6))
-        alone = evod("run", self.file, "--generations", "6")
-        self.assertEqual(self.ended(client, "first", 6).state_hash, state_of(alone))
-        alone = evod("run", self.file, "--generations", "6", "--set", "food_health=9")
-        self.assertEqual(self.ended(client, "second", 6).state_hash, state_of(alone))
-
-    def test_a_change_that_no_longer_fits_is_dropped(self):
-        server = self.serve("--speed", "max")
-        client = self.come(server)
-        real = lambda name, value, generation: plain.w.ScheduledValue(name=name, generation=generation,
-                                                                      value=plain.w.ParameterValue(real=value))
-        create = c.CreateWorld(name="w", seed=1, parameters=plain.assignments(generation_s=0.1), schedule=[
-            real("impulse_min", 200, 3), real("mutation_chance", 0.5, 3), real("mutation_chance", 0.1, 4)])
-        client.call(create_world=create)
-        client.call(set_parameters=c.SetParameters(world="w", parameters=plain.assignments(impulse_max=150.0)))
-        client.call(subscribe_events=c.SubscribeEvents(world="w"))
-        client.call(set_speed=c.SetSpeed(world="w", speed=plain.w.Speed(max=True)))
-        client.call(run=c.Run(world="w", generations=4))
-        dropped = client.next_event("change_dropped").change_dropped
-        self.assertEqual((dropped.by.kind, sorted(dropped.name)),
-                         (access.w.ACTOR_KIND_SCHEDULE, ["impulse_min", "mutation_chance"]))
-        self.assertEqual([x.field for x in dropped.violations], ["impulse_max"])
-        self.ended(client, "w", 4)
-        values = {x.name: x.value.real for x in self.parameters(client, "w").parameters}
-        self.assertEqual((values["impulse_min"], values["mutation_chance"]), (20, 0.1))
-
-        # A reset restarts the schedule.
-        client.call(reset_world=c.ResetWorld(world="w"))
-        self.assertEqual(len(self.parameters(client, "w").schedule), 3)
-        values = {x.name: x.value.real for x in self.parameters(client, "w").parameters}
-        self.assertEqual(values["mutation_chance"], 0.15)
-
-    def test_invalid_files_name_generation_and_line(self):
-        wrong = pathlib.Path(self.folder) / "wrong.json"
-        wrong.write_text('{\n"impulse_max": {\n  "7": 90},\n"impulse_min": 95\n}')
-        self.assertIn("impulse_max at generation 7 (line 3): got 90, allowed at least impulse_min (95)",
-                      evod("check", str(wrong), status=1))
-        self.assertIn('"mutation_chance": {"1": 0.5, "3": 0.05}', evod("check", self.file))
-        refused = evod("run", self.file, "--set", "impulse_min=95", "--set", "impulse_max=90", status=2)
-        self.assertIn("impulse_max", refused)
-        steep = self.write("steep.json", {"impulse_min": {"3": 200}})
-        self.assertIn("impulse_max at generation 3: got 150", evod("run", steep, "--set", "impulse_max=150", status=2))
-
 
 class Planned(access.Access):
     """Changes that take effect at a given generation or tick."""
@@ -188,22 +137,6 @@ class Planned(access.Access):
         server.process.terminate()
         self.assertEqual(waiting.ended(server.process), 0)
         evod("verify", f"{self.folder}/default.evod")
-
-    def test_wrong_ticks_and_ids_are_named(self):
-        client = self.come(self.serve("--seed", "3"))
-        for at, field, allowed in (({"at_tick": 0}, "at_tick", "at least 1"),
-                                   ({"at_generation": 1}, "at_generation", "at least 2"),
-                                   ({"at_generation": 0}, "at_generation", "at least 2"),
-                                   ({"at_generation": 2, "at_tick": 9}, "at_tick", "absent if at_generation is set")):
-            status = self.plan(client, INVALID, **at).status
-            self.assertEqual([(x.field, x.allowed) for x in status.violations], [("set_parameters." + field, allowed)])
-        status = client.call(5, cancel_change=c.CancelChange(world="default", id=4)).status
-        self.assertEqual(status.violations[0].field, "cancel_change.id")
-        self.assertEqual(self.plan(client, at_tick=7, dry_run=True).planned_change.id, 0)
-        self.assertEqual(self.planned(client), [])
-        for _ in range(client.welcome.limits.planned_changes_max):
-            self.plan(client, at_tick=7)
-        self.plan(client, 8, at_tick=7)
 
     def test_evoctl_plans_lists_and_cancels(self):
         server = self.serve("--seed", "3")

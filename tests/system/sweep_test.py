@@ -128,26 +128,6 @@ class Sweep(Folder):
         evod("sweep", sweep, "--out", out, "--gather")
         self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
 
-    def test_a_latin_hypercube_is_drawn_the_same_each_time(self):
-        sweep = self.file({"experiment": {"generation_s": 1, "population_size": 8}, "generations": 2, "seed": 5,
-                           "latin_hypercube": {"samples": 6, "parameters": {
-                               "mutation_chance": {"from": 0.0, "to": 0.6}, "food_count": {"from": 1, "to": 3},
-                               "selection": ["roulette", "random", "tournament"]}}})
-        evod("sweep", sweep, cwd=self.folder)
-        _, rows = rows_of(self.folder / "small/runs.csv")
-        cells = {row["cell"]: row for row in rows}.values()
-        self.assertEqual(sorted(int(float(cell["mutation_chance"]) * 10) for cell in cells), [0, 1, 2, 3, 4, 5])
-        self.assertEqual(sorted(cell["food_count"] for cell in cells), ["1", "1", "2", "2", "3", "3"])
-        printed = evod("sweep", sweep, "--dry-run").stdout.split("\ncell\t")[1].splitlines()
-        self.assertEqual([line.split("\t")[1:] for line in printed[1:]],
-                         [[cell[name] for name in printed[0].split("\t")] for cell in cells])
-
-    def test_a_dry_run_lists_the_cells_of_the_example(self):
-        done = evod("sweep", ROOT / "experiments/sweeps/mutation.json", "--dry-run", cwd=self.folder)
-        self.assertIn("16 cells of 4 replicates, 64 runs, seed 1", done.stdout)
-        self.assertIn("\ncell\tselection\tmutation_chance\tmutation_step\n0\troulette\t0.01\t5\n", done.stdout)
-        self.assertEqual(list(self.folder.iterdir()), [])
-
 
 class Interrupted(Folder):
     LONG = {**SMALL, "experiment": {"population_size": 40, "generation_s": 20}, "replicates": 10, "generations": 30}
@@ -192,21 +172,6 @@ class Interrupted(Folder):
             self.assertEqual(list((out / "parts").glob("*unfinished*")), [])
         evod("sweep", sweep, "--out", out)
         self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
-
-    def test_a_torn_part_is_made_again_a_changed_one_is_named(self):
-        sweep = self.file(SMALL)
-        whole, out = self.swept(sweep), self.folder / "torn"
-        evod("sweep", sweep, "--out", out)
-        part = out / "parts/cell-1-replicate-2.csv"
-        text = part.read_text()
-        for torn in ("", text[:-1], text[:100]):
-            part.write_text(torn)
-            self.assertIn("11 finished before", evod("sweep", sweep, "--out", out).stdout)
-            self.assertEqual(part.read_text(), text)
-            self.assertEqual((out / "runs.csv").read_bytes(), whole)
-        part.write_text(text.split("\n", 1)[1])  # a row less
-        done = evod("sweep", sweep, "--out", out, status=1)
-        self.assertIn("cell-1-replicate-2.csv was changed: delete it", done.stderr)
 
     def test_run_files_agree_also_after_a_kill(self):
         sweep, out = self.file(self.LONG), self.folder / "kept"
@@ -258,23 +223,6 @@ class Interrupted(Folder):
 
 
 class Refused(Folder):
-    def test_an_invalid_file_is_refused_before_anything_runs(self):
-        for text, words in {
-            '{"grid": {"mutation_chance": [0.1, 1.5]}, "generations": 3}':
-                "small.json: invalid sweep\n  grid.mutation_chance[1] (line 1): got 1.5, allowed 0 to 1",
-            '{"list": [{}],\n"generation": 3}': "generation (line 2): unknown name; did you mean generations?",
-            '{"parameters": {"food_count": [1]}, "generations": 3}': "parameters (line 1): unknown name; did you mean "
-                                                                     "grid?",
-            '{"list": [{}], "experiment": "nowhere.json"}': "nowhere.json: cannot be read: No such file",
-            '{"list": [{}]}': "generations: got nothing, allowed a criterion that ends a run",
-            '{"list": [{}]': "small.json: not JSON: line 1",
-        }.items():
-            with self.subTest(text):
-                self.assertIn(words, evod("sweep", self.file(text), status=1, cwd=self.folder).stderr)
-                self.assertFalse((self.folder / "small").exists())
-        self.assertIn("cannot be read: No such file", evod("sweep", "/nowhere.json", status=1).stderr)
-        self.assertIn("this is a folder, not a sweep file", evod("sweep", "/tmp", status=1).stderr)
-
     def test_experiment_paths_are_relative_to_the_sweep_file(self):
         (self.folder / "deep").mkdir()
         sweep = self.file('{"list": [{}], "experiment": "../mine.json"}', "deep/small.json")
@@ -287,15 +235,6 @@ class Refused(Folder):
         self.file('{"generation_limit": 2, "generation_s": 1}', "mine.json")
         said = evod("sweep", sweep, "--out", self.folder / "out", status=1).stderr
         self.assertRegex(said, r"another sweep.*\n  parameters: got \{.*\"generation_limit\": 1\}, allowed \{.*: 2\}")
-
-    def test_a_folder_of_another_sweep_is_refused(self):
-        out = self.folder / "out"
-        evod("sweep", self.file(SMALL), "--out", out)
-        table = (out / "runs.csv").read_bytes()
-        for gather in ([], ["--gather"], ["--array-index", "0"]):
-            said = evod("sweep", self.file({**SMALL, "seed": 8}), "--out", out, *gather, status=1).stderr
-            self.assertRegex(said, "another sweep.*--out.*\n  seed: got 7, allowed 8\n  sweep file: got a changed text")
-        self.assertEqual((out / "runs.csv").read_bytes(), table)
 
     def test_wrong_usage_ends_with_status_2(self):
         sweep = self.file(SMALL)

@@ -58,27 +58,6 @@ TEST_F(PanelsTest, WhatOnlyThePageHasLeadsToThePage) {
     }
 }
 
-TEST_F(PanelsTest, DropDownsReturnToTheFirstChoice) {
-    RealServer server{{"--seed", "7", "--data", folder.file("runs")}};
-    std::string script = "timeout 10\nwait snapshot\n";
-    for (int i = 0; i < 2; ++i) {
-        script += R"script(
-key F4
-set selection truncation
-set selection roulette
-key F5
-set skin classic
-set skin vivid
-set palette cividis
-set palette violet
-set "colour by (C)" health
-set "colour by (C)" "nothing (shade: health)"
-)script";
-    }
-    const Ran ran = play(server.address(), script + "quit\n");
-    EXPECT_EQ(ran.status, 0) << ran.output;
-}
-
 double chance_of(const evod::v1::ParameterSet& set) {
     for (const auto& parameter : set.parameters()) {
         if (parameter.name() == "mutation_chance") {
@@ -148,25 +127,6 @@ set selection turnament
     EXPECT_THAT(unknown.output, HasSubstr("tournament, "));
 }
 
-TEST_F(PanelsTest, ARejectedValueIsMarkedAndChangesNothing) {
-    RealServer server{{"--seed", "7"}};
-    const Ran ran = play(server.address(), R"(
-wait snapshot
-key F4
-set Search tournament
-set tournament_size 5
-set tournament_winners 7
-wait widget "2 edited"
-click Apply
-wait widget "tournament_size is refused"
-click Discard
-wait widget "Revision 1"
-quit
-)");
-    ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(server.parameters().revision(), 1u);
-}
-
 TEST_F(PanelsTest, KeysTypedIntoAFieldCommandNothing) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
@@ -217,33 +177,6 @@ quit
     EXPECT_EQ(world.seed(), 12345u);
     EXPECT_EQ(world.generation(), 1u);
     EXPECT_TRUE(world.speed().max());
-}
-
-TEST_F(PanelsTest, InvalidNumbersAreRejected) {
-    RealServer server{{"--seed", "7"}};
-    const Ran ran = play(server.address(), R"(
-wait snapshot
-key F3
-set ticks 99999999999999
-click "Step ticks"
-wait widget "ticks is refused"
-set generations 0
-click "Run generations"
-wait widget "generations is refused"
-set seed 99999999999999999999
-click "Reset …"
-click "Reset the world"
-wait widget "seed is refused"
-quit
-)");
-    ASSERT_EQ(ran.status, 0) << ran.output;
-    const auto world = server.state();
-    EXPECT_EQ(world.state(), evod::v1::RUN_STATE_WAITING);
-    EXPECT_EQ(world.tick(), 0u);
-    const Ran negative = play(server.address(), "wait snapshot\ntimeout 0.5\nset speed -5\n");
-    EXPECT_EQ(negative.status, 1);
-    EXPECT_THAT(negative.output, HasSubstr("script:3: set speed -5: not done within 0 s: \"speed\" is \"1\""));
-    EXPECT_EQ(server.state().speed().real_time_factor(), 1);
 }
 
 TEST_F(PanelsTest, EscQuitsOnlyAtTheSecondPress) {
@@ -327,27 +260,6 @@ screenshot )" + folder.file("viewer.png") + "\nquit\n");
     EXPECT_THAT(server.end(), Not(HasSubstr("needs the role"))) << "the viewer sent no command";
 }
 
-TEST_F(PanelsTest, ALineWithoutEffectFails) {
-    RealServer server{{"--seed", "7"}};
-    const auto error_of = [&](const std::string& line) {
-        const Ran ran = play(server.address(), "wait snapshot\nkey F3\nwait widget seed\ntimeout 0.4\n" + line + "\n");
-        EXPECT_EQ(ran.status, 1) << line;
-        return ran.output;
-    };
-    EXPECT_THAT(error_of("key F4\nclick Apply"), HasSubstr("\"Apply\" is disabled: There are no edits"));
-    EXPECT_THAT(error_of("click World"), HasSubstr("\"World\" does not react to clicks"));
-    EXPECT_THAT(error_of("click Run"), HasSubstr("2 widgets have the name \"Run\": Sidebar/Run, Tabs/Run"));
-    EXPECT_THAT(error_of("set ticks abc"), HasSubstr("\"ticks\" does not accept this text; it contains \"60\""));
-    EXPECT_THAT(error_of("set Reset abc"), HasSubstr("no widget \"Reset\" is on the screen"));
-    EXPECT_THAT(error_of("set \"Step ticks\" 5"), HasSubstr("is not a field"));
-    EXPECT_THAT(error_of("type 5"), HasSubstr("no field has the keyboard focus"));
-    EXPECT_THAT(error_of("key A"), HasSubstr("key A: this key has no effect"));
-    EXPECT_THAT(error_of("key Tab"), HasSubstr("key Tab: There is only one island"));
-    EXPECT_THAT(error_of("key ["), HasSubstr("key [: Only a replay has a time line"));
-    EXPECT_THAT(error_of("click organism 99"), HasSubstr("organism 99 is not on the screen"));
-    EXPECT_THAT(error_of("key B"), HasSubstr("two worlds side by side are in the browser page"));
-}
-
 TEST_F(PanelsTest, EveryKindOfWidgetIsSetByTheTextBesideIt) {
     RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("data")}};
     evod::v1::Request run;
@@ -374,21 +286,6 @@ actions 12
 click at 0.5,0.5
 quit
 )script");
-    EXPECT_EQ(ran.status, 0) << ran.output;
-}
-
-TEST_F(PanelsTest, AWidgetOutOfSightIsScrolledIntoView) {
-    RealServer server{{"--seed", "7"}};
-    const Ran ran = play(server.address(), R"(
-wait snapshot
-key F4
-wait widget "Revision 1"
-wait gone migrant_count
-set migrant_count 3
-wait widget "1 edited"
-actions 5
-quit
-)");
     EXPECT_EQ(ran.status, 0) << ran.output;
 }
 

@@ -10,35 +10,6 @@
 namespace evod::viewer {
 namespace {
 
-TEST(RealServer, ScreenshotsMatchTheServersSnapshots) {
-    RealServer server{{"--seed", "7", "--speed", "max"}};
-    server.make_world(
-        {.name = "room",
-         .parameters = {{"obstacle_count", count(6)}, {"crate_count", count(9)}, {"population_size", count(60)}}});
-    for (const std::string world : {"default", "room"}) {
-        constexpr std::uint64_t tick = 601;
-        server.run_to(world, tick);
-        const auto snapshot = snapshot_of(server, world);
-        const TemporaryFolder folder;
-        const std::string path = folder.file("frame.png");
-        std::string arguments = "--server " + server.address();
-        arguments.append(" --skin classic --world ").append(world).append(" --screenshot ").append(path);
-        arguments.append(" --at-tick ").append(std::to_string(tick));
-        const Ran ran = run_evoview(arguments);
-        ASSERT_EQ(ran.status, 0) << ran.output;
-        sf::Image image;
-        ASSERT_TRUE(image.loadFromFile(path));
-        const ExpectedFrame expected{*snapshot, camera_of(snapshot->about, 1280, 720)};
-        EXPECT_GT(expected.count(palette::background), 500'000u);
-        // A ring of radius 4 px has dozens of fully covered pixels, a disc more.
-        EXPECT_GT(expected.count(palette::organism), 10 * snapshot->entities->organisms.id.size());
-        EXPECT_GT(expected.count(palette::food), 10 * snapshot->entities->food.id.size());
-        EXPECT_GT(expected.count(palette::poison), 10 * snapshot->entities->poison.id.size());
-        const auto mismatch = expected.compare(image);
-        EXPECT_EQ(mismatch.count, 0u) << world << " " << mismatch.first;
-    }
-}
-
 TEST(RealServer, KeysCommandTheWorld) {
     RealServer server{{"--seed", "7"}};
     Process evoview{EVOVIEW, {"--server", server.address(), "--size", "800x500", "--skin", "classic"}};

@@ -78,14 +78,6 @@ TEST_F(RecordTest, RecordsAReplayWithoutChangingTheWorld) {
     EXPECT_EQ(state().tick(), 300u);
 }
 
-TEST_F(RecordTest, EndsAtTheEndOfTheReplay) {
-    make_world(server, "one", 300);
-    const Ran ran = record(frames, "--past 3 --every 50");
-    ASSERT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(frame_count(), 3); // ticks 240, 290 and 300
-    expect_frame(2, 300);
-}
-
 /// Replaces ffmpeg by scripts; the real one may not be installed.
 struct FfmpegTest : RecordTest {
     FfmpegTest() {
@@ -147,14 +139,6 @@ TEST_F(FfmpegTest, ReportsAMissingFfmpegBeforeAnyCommand) {
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.output.find("could not start ffmpeg to create"), std::string::npos) << ran.output;
     EXPECT_EQ(state().tick(), 50u);
-}
-
-TEST(RecordOptions, AnInvalidCommandLineEndsWithStatus2) {
-    for (const char* arguments :
-         {"--record-ticks 5", "--fps 30", "--record a --every 0", "--record a --record-generations 0",
-          "--record a --screenshot b.png", "--past 0", "--timeout 5"}) {
-        EXPECT_EQ(run_evoview(arguments).status, 2) << arguments;
-    }
 }
 
 TEST(RecordAsAViewer, RecordsWithoutSendingCommands) {

@@ -114,11 +114,5 @@ TEST_F(ScreenshotTest, ReportsAFileThatCannotBeWritten) {
     EXPECT_NE(ran.output.find("could not write"), std::string::npos) << ran.output;
 }
 
-TEST_F(ScreenshotTest, AnInvalidCommandLineEndsWithStatus2) {
-    for (const char* arguments : {"--size 12by4", "--size 1280x9999999", "--server :x", "--at-tick 5", "--island -1"}) {
-        EXPECT_EQ(run_evoview(arguments).status, 2) << arguments;
-    }
-}
-
 } // namespace
 } // namespace evod::viewer

@@ -7,6 +7,7 @@ import unittest
 
 from page_case import Case, c
 from browser import Browser
+import waiting
 from screenshots import PHONE, SIZES, TABLET, TOUCHED, show
 
 LAPTOP = (1366, 768)
@@ -34,7 +35,8 @@ class Layout(Case):
     def open(self, size, introduction="seen", theme="dark"):
         browser, url = self.browser, self.page(self.served)
         show(browser, size)
-        browser.driver.get(url)
+        if not browser.driver.current_url.startswith(url):  # another test's server has another storage
+            browser.driver.get(url)
         browser.run("""localStorage.setItem('evod.introduction', arguments[0]);
                        localStorage.setItem('evod.theme', arguments[1]); localStorage.removeItem('evod.panel');""",
                     introduction, theme)
@@ -43,9 +45,7 @@ class Layout(Case):
                      "the curve and the sentence")
 
     def place(self, css):
-        found = self.browser.value(PLACE, css)
-        self.assertIsNotNone(found, css)
-        return found
+        return waiting.until(lambda: self.browser.value(PLACE, css), css)
 
     def in_window(self, css, size):
         left, top, right, bottom = self.place(css)

@@ -6,7 +6,6 @@
 
 #include <gmock/gmock.h>
 
-#include <set>
 #include <thread>
 
 namespace evod::core {
@@ -19,10 +18,6 @@ v1::Request run_request(std::uint64_t generations) {
     v1::Request request;
     request.mutable_run()->set_generations(generations);
     return request;
-}
-
-bool is_connected(const Connection& connection) {
-    return connection.status().state == State::Connected;
 }
 
 TEST(Connection, SendsHelloAndShowsTheWelcome) {
@@ -54,58 +49,6 @@ TEST(Connection, WithoutAServerSaysHowToStartOne) {
     EXPECT_NE(connection.status().state, State::Failed) << "one may be started yet";
 }
 
-TEST(Connection, AnotherProtocolVersionIsFinal) {
-    FakeServer server;
-    Connection connection{server.options()};
-    FakeSession session = server.accept();
-    session.read();
-    v1::ServerMessage message;
-    message.mutable_welcome()->set_protocol_version(2);
-    session.send(message);
-    const auto welcome = connection.wait_connected(hang);
-    ASSERT_FALSE(welcome);
-    EXPECT_THAT(welcome.error().what, HasSubstr("uses protocol version 2, this program version 1"));
-    EXPECT_EQ(connection.status().state, State::Failed);
-    EXPECT_FALSE(connection.request(run_request(1))) << "and what is asked afterwards fails at once";
-}
-
-TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsFull) {
-    FakeServer server;
-    Connection connection{server.options()};
-    {
-        FakeSession session = server.accept();
-        session.read();
-        session.say_goodbye(v1::CODE_RESOURCE_EXHAUSTED, "16 sessions are open");
-    }
-    FakeSession session = server.accept();
-    EXPECT_THAT(connection.status().reason, HasSubstr(": 16 sessions are open"));
-    session.read();
-    session.say_goodbye(v1::CODE_INVALID_ARGUMENT, "the client name is too long");
-    EXPECT_TRUE(wait_until([&] { return connection.status().state == State::Failed; }));
-    EXPECT_THAT(connection.status().reason, HasSubstr(": the client name is too long"));
-}
-
-TEST(Connection, APeerThatIsNoServerIsReported) {
-    FakeServer server;
-    Connection connection{server.options()};
-    FakeSession session = server.accept();
-    session.write("SSH-2.0-OpenSSH_9.2\r\n");
-    const auto welcome = connection.wait_connected(hang);
-    ASSERT_FALSE(welcome);
-    EXPECT_THAT(welcome.error().what, HasSubstr("is not an evod server"));
-}
-
-TEST(Connection, AWelcomeThatDoesNotComeTimesOut) {
-    FakeServer server;
-    Options options = server.options();
-    options.connect_timeout = 20ms;
-    Connection connection{options};
-    FakeSession session = server.accept();
-    EXPECT_FALSE(connection.wait_connected(hang));
-    EXPECT_TRUE(wait_until([&] { return connection.status().reason.find("no Welcome from") != std::string::npos; }))
-        << connection.status().reason;
-}
-
 TEST(Requests, AreNumberedInOrderUnderOneKey) {
     FakeServer server;
     Connection connection{server.options()};
@@ -124,50 +67,6 @@ TEST(Requests, AreNumberedInOrderUnderOneKey) {
     }
 }
 
-TEST(Requests, AreMatchedWithRepliesInAnyOrder) {
-    FakeServer server;
-    Connection connection{server.options()};
-    FakeSession session = server.accept_and_welcome();
-    auto first = connection.send(run_request(1)), second = connection.send(run_request(2));
-    const v1::Request request_1 = session.read_request(), request_2 = session.read_request();
-    session.answer(request_2, 2);
-    session.answer(request_1, 1);
-    EXPECT_EQ(second.get()->applied_tick(), 2U);
-    EXPECT_EQ(first.get()->applied_tick(), 1U);
-}
-
-TEST(Requests, AreSentAgainWithTheSameNumberAfterALoss) {
-    FakeServer server;
-    Connection connection{server.options()};
-    std::future<Result<v1::Response>> first, second;
-    v1::Request lost_1, lost_2;
-    {
-        FakeSession session = server.accept_and_welcome();
-        first = connection.send(run_request(1));
-        second = connection.send(run_request(2));
-        lost_1 = session.read_request();
-        lost_2 = session.read_request();
-    }
-    FakeSession session = server.accept_and_welcome();
-    const v1::Request again_1 = session.read_request(), again_2 = session.read_request();
-    EXPECT_EQ(again_1.SerializeAsString(), lost_1.SerializeAsString());
-    EXPECT_EQ(again_2.SerializeAsString(), lost_2.SerializeAsString());
-    session.answer(again_1, 1);
-    session.answer(again_2, 2);
-    EXPECT_EQ(first.get()->applied_tick(), 1U);
-    EXPECT_EQ(second.get()->applied_tick(), 2U);
-    EXPECT_EQ(connection.status().connected_count, 2U);
-}
-
-TEST(Requests, WaitForAConnection) {
-    FakeServer server;
-    Connection connection{server.options()};
-    auto response = connection.send(run_request(7));
-    FakeSession session = server.accept_and_welcome();
-    session.answer(session.read_request(), 7);
-    EXPECT_EQ(response.get()->applied_tick(), 7U);
-}
-
 TEST(Requests, TimeOutAndALateReplyIsIgnored) {
     FakeServer server;
     Connection connection{server.options()};
@@ -183,43 +82,6 @@ TEST(Requests, TimeOutAndALateReplyIsIgnored) {
     EXPECT_EQ(next.get()->applied_tick(), 2U) << "the late answer has made room";
 }
 
-TEST(Requests, StayWithinTheServersLimitOfUnanswered) {
-    FakeServer server;
-    Connection connection{server.options()};
-    FakeSession session = server.accept_and_welcome(4); // the client uses half of it
-    std::vector<std::future<Result<v1::Response>>> responses;
-    for (std::uint64_t i = 1; i <= 5; ++i) {
-        responses.push_back(connection.send(run_request(i)));
-    }
-    v1::Request first = session.read_request();
-    v1::Request second = session.read_request();
-    session.send_event(1);
-    ASSERT_TRUE(connection.wait_event(hang)); // the client's thread has been through all five
-    EXPECT_EQ(session.unread_bytes(), 0U);
-    session.answer(second);
-    EXPECT_TRUE(responses[1].get());
-    const v1::Request third = session.read_request();
-    EXPECT_EQ(third.run().generations(), 3U);
-    session.answer(first);
-    session.answer(third);
-    for (int i = 0; i < 2; ++i) {
-        session.answer(session.read_request());
-    }
-    for (const std::size_t i : {0U, 2U, 3U, 4U}) {
-        EXPECT_TRUE(responses[i].get());
-    }
-}
-
-TEST(Requests, ThatAreTooLongAreNotSent) {
-    FakeServer server;
-    Connection connection{server.options()};
-    v1::Request request;
-    request.mutable_create_world()->set_name(std::string(2 << 20, 'x'));
-    const auto response = connection.request(request);
-    ASSERT_FALSE(response);
-    EXPECT_EQ(response.error().kind, Error::Kind::Usage);
-}
-
 TEST(Requests, AreAllAnsweredWhenTheConnectionIsDestroyed) {
     FakeServer server;
     std::future<Result<v1::Response>> response;
@@ -228,43 +90,6 @@ TEST(Requests, AreAllAnsweredWhenTheConnectionIsDestroyed) {
         response = connection.send(run_request(1));
     }
     EXPECT_EQ(response.get().error().kind, Error::Kind::Closed);
-}
-
-TEST(Requests, EndWithTheConnectionWithoutReconnect) {
-    FakeServer server;
-    Options options = server.options();
-    options.reconnect = false;
-    Connection connection{options};
-    std::future<Result<v1::Response>> response;
-    {
-        FakeSession session = server.accept_and_welcome();
-        response = connection.send(run_request(1));
-        session.read_request();
-    }
-    const auto result = response.get();
-    ASSERT_FALSE(result);
-    EXPECT_THAT(result.error().what, HasSubstr("closed the connection"));
-}
-
-TEST(Reconnection, FollowsDamagedFrames) {
-    FakeServer server;
-    Connection connection{server.options()};
-    FakeSession first = server.accept_and_welcome();
-    ASSERT_TRUE(connection.wait_connected(hang));
-    first.write("nonsense");
-    FakeSession second = server.accept();
-    EXPECT_THAT(connection.status().reason, HasSubstr("sent damaged data"));
-    second.welcome();
-    EXPECT_TRUE(wait_until([&] { return is_connected(connection); }));
-}
-
-TEST(Reconnection, FollowsAnInvalidMessage) {
-    FakeServer server;
-    Connection connection{server.options()};
-    FakeSession first = server.accept_and_welcome();
-    first.write(std::string("EV\x01\x01\x02\x00\x00\x00\xff\xff", 10));
-    FakeSession second = server.accept_and_welcome();
-    EXPECT_TRUE(wait_until([&] { return connection.status().connected_count == 2; }));
 }
 
 TEST(Reconnection, ShowsTheServersLastRefusal) {
@@ -287,21 +112,6 @@ TEST(Reconnection, ShowsTheServersLastRefusal) {
     third.welcome();
     EXPECT_TRUE(wait_until([&] { return connection.status().connected_count == 3; }));
     EXPECT_FALSE(connection.status().refusal);
-}
-
-TEST(Reconnection, DoesNotFollowARevokedToken) {
-    FakeServer server;
-    Connection connection{server.options()};
-    {
-        FakeSession session = server.accept_and_welcome();
-        session.say_goodbye(v1::CODE_UNAUTHENTICATED, "the token has been revoked");
-    }
-    EXPECT_TRUE(wait_until([&] { return connection.status().state == State::Failed; }));
-    const ConnectionStatus status = connection.status();
-    EXPECT_THAT(status.reason, HasSubstr("the token has been revoked"));
-    EXPECT_TRUE(status.token_needed);
-    ASSERT_TRUE(status.refusal);
-    EXPECT_EQ(status.refusal->message(), "the token has been revoked");
 }
 
 TEST(Subscriptions, PrecedeOtherRequestsAfterALoss) {
@@ -339,32 +149,6 @@ TEST(Subscriptions, PrecedeOtherRequestsAfterALoss) {
     std::shared_ptr<const codec::ReceivedSnapshot> snapshot;
     EXPECT_TRUE(wait_until([&] { return (snapshot = connection.take_snapshot(handle)) != nullptr; }));
     EXPECT_EQ(snapshot->about.tick(), 99U) << "the handle outlives the session";
-}
-
-TEST(Subscriptions, ARefusalIsShown) {
-    FakeServer server;
-    Connection connection{server.options()};
-    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
-    FakeSession session = server.accept_and_welcome();
-    session.refuse(session.read_request().request_id(), v1::CODE_NOT_FOUND, "there is no world 'x'");
-    const auto answer = connection.wait_subscribed(handle, hang);
-    ASSERT_TRUE(answer);
-    EXPECT_FALSE(accepted(*answer));
-    EXPECT_EQ(to_text(answer->status()), "there is no world 'x'");
-}
-
-TEST(Subscriptions, CancelledBeforeTheReplyIsUnsubscribed) {
-    FakeServer server;
-    Connection connection{server.options()};
-    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
-    FakeSession session = server.accept_and_welcome();
-    const v1::Request request = session.read_request();
-    connection.unsubscribe(handle);
-    auto marker = connection.send(run_request(1));
-    session.answer(session.read_request());
-    EXPECT_TRUE(marker.get());
-    session.answer_subscription(request, 3);
-    EXPECT_EQ(session.read_request().unsubscribe().subscription_id(), 3U);
 }
 
 TEST(Snapshots, OnlyTheNewestOfEachIslandIsKept) {
@@ -458,36 +242,6 @@ TEST(Snapshots, DeltasAreDecodedAndAcknowledged) {
     }
 }
 
-TEST(Snapshots, ADamagedDeltaRequestsAKeyframe) {
-    FakeServer server;
-    Connection connection{server.options()};
-    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
-    FakeSession session = server.accept_and_welcome();
-    session.answer_subscription(session.read_request(), 1);
-    MovingSnapshots snapshots;
-    session.send(snapshots.keyframe());
-    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    auto damaged = snapshots.delta();
-    damaged.mutable_body()->back() ^= 1;
-    session.send(damaged);
-    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    const v1::Request request = session.read_request();
-    EXPECT_EQ(request.request_keyframe().subscription_id(), 1U);
-    session.send(snapshots.delta()); // on its way before the request came
-    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    session.answer(request);
-    session.send(snapshots.keyframe());
-    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    session.send(snapshots.delta());
-    const auto snapshot = snapshot_of_tick(connection, handle, 5);
-    ASSERT_TRUE(snapshot);
-    EXPECT_EQ(snapshot->entities->organisms.x, codec::Column(1, codec::steps_of(4)));
-    const ConnectionStatus status = connection.status();
-    EXPECT_EQ(status.damaged_snapshot_count, 1U);
-    EXPECT_THAT(status.last_damage, HasSubstr("checksum"));
-    EXPECT_EQ(status.keyframe_request_count, 1U);
-}
-
 TEST(Snapshots, DamagedKeyframesEndTheKeyframeRequests) {
     FakeServer server;
     Connection connection{server.options()};
@@ -502,46 +256,6 @@ TEST(Snapshots, DamagedKeyframesEndTheKeyframeRequests) {
     }
     EXPECT_TRUE(wait_until([&] { return connection.status().damaged_snapshot_count == 20; }));
     EXPECT_EQ(connection.status().keyframe_request_count, 3U);
-}
-
-v1::View view_of(double left_px) {
-    v1::View view;
-    view.mutable_region()->set_left_px(left_px);
-    view.mutable_region()->set_width_px(10);
-    view.mutable_region()->set_height_px(10);
-    return view;
-}
-
-TEST(Views, AreRequestedChangedAndRenewed) {
-    FakeServer server;
-    Connection connection{server.options()};
-    v1::SubscribeSnapshots subscribe;
-    *subscribe.mutable_view() = view_of(1);
-    const SubscriptionHandle handle = connection.subscribe(subscribe);
-    {
-        FakeSession session = server.accept_and_welcome();
-        const v1::Request request = session.read_request();
-        EXPECT_EQ(request.subscribe_snapshots().view().region().left_px(), 1);
-        EXPECT_EQ(request.subscribe_snapshots().codec(), v1::CODEC_DELTA);
-        connection.set_view(handle, view_of(2)); // before the server knows of any
-        auto marker = connection.send(run_request(1));
-        session.answer(session.read_request());
-        ASSERT_TRUE(marker.get());
-        session.answer_subscription(request, 7);
-        const v1::Request changed = session.read_request();
-        EXPECT_EQ(changed.set_view().subscription_id(), 7U);
-        EXPECT_EQ(changed.set_view().view().region().left_px(), 2);
-        connection.set_view(handle, view_of(3));
-        session.answer_subscription(changed, 7); // one change is in flight at a time
-        const v1::Request last = session.read_request();
-        EXPECT_EQ(last.set_view().view().region().left_px(), 3);
-        session.answer_subscription(last, 7);
-        auto seen = connection.send(run_request(2));
-        session.answer(session.read_request());
-        ASSERT_TRUE(seen.get());
-    }
-    FakeSession again = server.accept_and_welcome();
-    EXPECT_EQ(again.read_request().subscribe_snapshots().view().region().left_px(), 3);
 }
 
 /// A snapshot of one tile, with two organisms in it.
@@ -601,26 +315,6 @@ TEST(Views, ADamagedTileRequestsAKeyframe) {
     EXPECT_TRUE(snapshot_of_tick(connection, handle, 5));
     EXPECT_EQ(connection.status().damaged_snapshot_count, 1U);
     EXPECT_EQ(connection.status().keyframe_request_count, 1U);
-}
-
-TEST(Events, ComeInOrderAndALossIsReported) {
-    FakeServer server;
-    Options options = server.options();
-    options.events_kept = 3;
-    Connection connection{options};
-    FakeSession session = server.accept_and_welcome();
-    for (std::uint64_t tick = 1; tick <= 5; ++tick) {
-        session.send_event(tick);
-    }
-    auto marker = connection.send(run_request(1));
-    session.answer(session.read_request());
-    ASSERT_TRUE(marker.get());
-    const auto events = connection.take_events();
-    ASSERT_EQ(events.size(), 4U);
-    EXPECT_EQ(events[0].events_dropped().dropped_count(), 2U);
-    EXPECT_EQ(events[1].tick(), 3U);
-    EXPECT_EQ(events[3].tick(), 5U);
-    EXPECT_FALSE(connection.wait_event(1ms));
 }
 
 TEST(Endpoint, IsReadInEveryUsualForm) {

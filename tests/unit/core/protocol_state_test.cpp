@@ -407,7 +407,9 @@ TEST_F(Reconnecting, DependsOnTheGoodbye) {
         say_goodbye(code);
         EXPECT_EQ(output.status.state, state);
         EXPECT_FALSE(output.connection_wanted);
-        EXPECT_THAT(output.status.reason, HasSubstr("ended the session: "));
+        EXPECT_THAT(output.status.reason, HasSubstr("ended the session: go away"));
+        EXPECT_EQ(output.status.token_needed, code == v1::CODE_UNAUTHENTICATED);
+        EXPECT_EQ(output.status.refusal->message(), "go away");
     }
 }
 
@@ -511,6 +513,7 @@ TEST_F(SubscriptionsWithoutSockets, DamageRequestsAKeyframeOnce) {
     receive(snapshots.delta());
     EXPECT_EQ(output.snapshots.at({1}).at(0)->about.tick(), 5U);
     EXPECT_EQ(output.status.damaged_snapshot_count, 1U);
+    EXPECT_THAT(output.status.last_damage, HasSubstr("checksum"));
     EXPECT_EQ(output.status.keyframe_request_count, 1U);
 }
 
@@ -548,11 +551,18 @@ TEST_F(SubscriptionsWithoutSockets, AViewIsSentOnceItIsKnown) {
     const v1::Request changed = read_request();
     EXPECT_EQ(changed.set_view().subscription_id(), 9U);
     EXPECT_EQ(changed.set_view().view().region().left_px(), 5);
+    view.mutable_region()->set_left_px(6);
+    protocol->subscriptions().set_view({1}, view);
+    perform();
+    EXPECT_FALSE(read().has_request()) << "one change is in flight at a time";
     answer_subscription(changed, 9);
+    const v1::Request last = read_request();
+    EXPECT_EQ(last.set_view().view().region().left_px(), 6);
+    answer_subscription(last, 9);
     lose();
     reconnect();
     const v1::Request renewed = read_request();
-    EXPECT_EQ(renewed.subscribe_snapshots().view().region().left_px(), 5);
+    EXPECT_EQ(renewed.subscribe_snapshots().view().region().left_px(), 6);
     answer_subscription(renewed, 2);
     EXPECT_FALSE(read().has_request()) << "the subscription contains the view";
 }
