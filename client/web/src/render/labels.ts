@@ -32,8 +32,9 @@ export function healthiest(snapshot: KeptSnapshot, count: number): number[] {
   return best;
 }
 
-/** Places each label above its organism, below it, or next to it, where it overlaps no wall and no earlier label. Returns
- *  the labels that have such a place, and always the first one. `walls`: the part of the screen inside the walls. */
+/** Places each label above its organism, below it, or next to it, where it overlaps no wall and no earlier label.
+ *  Returns the labels that have such a place, and always the first one. `walls`: the part of the screen inside the
+ *  walls. */
 export function place_labels(labels: Label[], height: number, walls: Rectangle): Label[] {
   const cell = labels.reduce((most, {width}) => Math.max(most, width), height);
   const cells = new Map<number, Label[]>(); // by the cell of the upper left corner; no label is wider than a cell

@@ -41,7 +41,7 @@ export class Past {
     this.#changes = changes;
   }
 
-  /** Tells that the run begins with this moment, because it is a fork. */
+  /** Sets the first moment of the run, which is a fork. */
   begin({run_id = "", generation = 1, tick = 0}: WorldInfo): void {
     this.#begin = {run_id, generation, tick};
     this.#changes.notify();
