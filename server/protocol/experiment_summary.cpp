@@ -91,11 +91,11 @@ std::string counted(std::uint32_t count, const std::string& one, const std::stri
 std::string about_meals(const Parameters& p) {
     const bool has_networks = p.controller == evolution::Controller::Network;
     std::string text = counted(p.population_size, "organism", "organisms") +
-                       (has_networks ? ", each steered by an evolving neural network, eat" : " seek") + " food (+" +
-                       shown(p.food_health) + " health)";
+                       (has_networks ? ", each steered by an evolving neural network, gain health from" : " seek") +
+                       " food (+" + shown(p.food_health) + (has_networks ? ")" : " health)");
     if (p.poison_count != 0) {
         const bool always = p.flee_rule == parameters::FleeRule::Always;
-        text += std::string{has_networks ? " and poison"
+        text += std::string{has_networks ? " and lose it from poison"
                             : always     ? " and always flee from poison"
                                          : " and avoid poison"} +
                 " (−" + shown(p.poison_harm) + ")";

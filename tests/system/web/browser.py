@@ -188,9 +188,8 @@ class Browser:
         element.send_keys(text, Keys.ENTER)
 
     def take_part(self, part=True):
-        switch = self.element("input[role=switch]")
-        if switch.is_selected() != part:
-            self.click(switch)
+        if self.value("evod.server.taking_part") != part:
+            self.click(self.element(".part .button"))
         self.wait("evod.server.taking_part === arguments[0]", "taking part", part)
 
     def set_camera(self, x_px, y_px, zoom):

@@ -43,17 +43,29 @@ class Controls(Case):
         before = self.control.world()
         self.assertFalse(browser.value("evod.server.taking_part"))
         browser.panel("Parameters")
-        browser.wait_for_text("You are watching. Turn on “Take part” to change worlds.", "[data-panel=parameters]")
+        browser.wait_for_text("You are watching. Press “Take part” to change worlds.", "[data-panel=parameters]")
         self.assertFalse(self.field("mutation_chance").is_enabled())
         for label in ("Run", "One generation"):
             browser.click(label)
-            browser.wait_for_text("Turn on “Take part”", ".notices")
+            browser.wait_for_text("Press “Take part”", ".notices")
         browser.element("body").send_keys(Keys.SPACE)
         self.assertEqual(self.control.world(), before)
         browser.take_part()
         self.wait_enabled("mutation_chance")
         browser.take_part(False)
         self.wait_enabled("mutation_chance", False)
+
+    def test_a_refused_action_offers_to_take_part(self):
+        self.browser.click("Run")
+        self.browser.press("Take part", ".notices")
+        self.browser.wait("evod.server.taking_part", "taking part")
+        self.browser.take_part(False)
+
+    def test_a_waiting_world_can_be_started_on_its_island(self):
+        self.browser.press("▶ Start", ".pane-stage")
+        self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, "default")
+        self.browser.wait("!document.querySelector('.pane-start').checkVisibility()", "no button on a running world")
+        self.browser.take_part(False)
 
     def test_a_field_and_a_slider_change_the_server(self):
         browser = self.browser

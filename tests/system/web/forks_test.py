@@ -4,6 +4,7 @@ import sys
 import unittest
 
 from page_case import Case, c
+from browser import Keys
 
 NOTE = ".origin-note"
 BRED = "Generation 3 bred in the world default, before this fork began."
@@ -53,6 +54,21 @@ class Forks(Case):
         browser.press("Open it in default", NOTE)
         self.origin_shown()
         browser.wait_for_text("World default, generation 3", ".glass-box")
+
+    def test_the_family_tree_leads_to_earlier_ancestors(self):
+        browser = self.browser
+        browser.panel("Family tree")
+        self.select()
+        browser.wait_for_text(BRED, NOTE)
+        browser.press("Open it in default", NOTE)
+        self.origin_shown()
+
+    def test_the_curve_shows_the_first_generation_of_the_run(self):
+        browser = self.browser
+        browser.panel("Overview")
+        browser.element(".overview .plot-area").send_keys(Keys.HOME, Keys.ENTER)
+        browser.wait("evod.app.world().is_replay && evod.app.world().snapshot?.generation === 4", "the replay")
+        browser.wait_for_text("can be shown from generation 4 on", ".notices")
 
     def test_a_later_generation_knows_its_own_picks(self):
         browser = self.browser

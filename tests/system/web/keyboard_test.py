@@ -55,8 +55,7 @@ class Keyboard(Case):
 
     def test_the_run_control_works_by_keyboard(self):
         browser = self.browser
-        switch = browser.element("input[role=switch]")
-        switch.send_keys(Keys.SPACE)
+        browser.element(".part .button").send_keys(Keys.SPACE)
         browser.wait("evod.server.taking_part && !document.querySelector('.run-bar .run').ariaDisabled",
                      "an enabled button")
         browser.element(".run-bar .run").send_keys(Keys.ENTER)

@@ -98,6 +98,19 @@ class Notices(Case):
                 restore()
 
 
+    def test_a_refusal_stays_until_the_next_action(self):
+        browser = self.browser
+        browser.run("""const { setTimeout } = globalThis;  // messages that expire after some seconds do so at once
+            globalThis.setTimeout = (act, ms) => ms >= 6000 ? act() : setTimeout(act, ms);""")
+        refused = "void evod.app.attempt(() => evod.server.request('pause', { world: arguments[0] }))"
+        browser.run("evod.app.notify('expires')")
+        browser.run(refused, "nowhere")
+        browser.wait_for_text("nowhere", ".notices")
+        self.assertNotIn("expires", browser.text(".notices"))
+        browser.run("void evod.app.attempt(async () => undefined)")
+        browser.wait("document.querySelector('.notice') === null", "no refusal after the next action")
+
+
 if __name__ == "__main__":
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # closes the browser
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -28,9 +28,10 @@ TEST(ExperimentSummary, SaysWhatTheOrganismsTryToDo) {
 }
 
 TEST(ExperimentSummary, SaysThatNetworksSteerTheOrganisms) {
-    EXPECT_THAT(experiment_summary(with({{"controller", std::string{"network"}}})),
-                StartsWith("50 organisms, each steered by an evolving neural network, eat food (+25 health) and "
-                           "poison (−40); a line shows where each heads. Each loses 6 health"));
+    EXPECT_THAT(
+        experiment_summary(with({{"controller", std::string{"network"}}})),
+        StartsWith("50 organisms, each steered by an evolving neural network, gain health from food (+25) and lose "
+                   "it from poison (−40); a line shows where each heads. Each loses 6 health"));
 }
 
 TEST(ExperimentSummary, LeavesOutWhatTheExperimentLacks) {

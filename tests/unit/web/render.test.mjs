@@ -249,6 +249,24 @@ test("labels avoid walls and each other", () => {
   const labels = [label(100, 100), label(105, 100), label(100, 8), label(3, 200)];
   render.place_labels(labels, 10, { left: 0, top: 0, width: 400, height: 400 });
   assert.deepEqual(labels.map(({ left, top }) => [left, top]), [[90, 84], [95, 106], [90, 14], [1, 184]]);
+  const crowded = Array.from({ length: 6 }, () => label(100, 100)); // above, below, right, left, and no place for two
+  assert.deepEqual(render.place_labels(crowded, 10, { left: 0, top: 0, width: 400, height: 400 }), crowded.slice(0, 4));
+});
+
+test("a reading is of one snapshot and ends with its generation", () => {
+  const streamed = new render.StreamedIsland(), look = render.default_look("vivid", "dark");
+  const read = (now_ms, info, health) => {
+    const shown = snapshot({ state: "RUN_STATE_RUNNING", ...info }, [[0, 0, 0], [1, 0, 0]]);
+    shown.organisms.health.set(health.map((one) => 16 * one));
+    streamed.add(shown, now_ms, null, canvas, look);
+    const { info: { tick }, healthiest } = streamed.read(shown.info, now_ms);
+    return [tick, ...healthiest.map(({ id, health }) => `${id}: ${health}`)];
+  };
+  assert.deepEqual(read(0, { tick: 1 }, [5, 9]), [1, "1: 9", "0: 5"]);
+  assert.deepEqual(read(100, { tick: 2 }, [7, 3]), [1, "1: 9", "0: 5"]); // too early for another one
+  assert.deepEqual(read(500, { tick: 3 }, [7, 3]), [3, "0: 7", "1: 3"]);
+  assert.deepEqual(read(510, { tick: 4, generation: 2 }, [1, 2]), [4, "1: 2", "0: 1"]);
+  assert.deepEqual(read(520, { tick: 5, generation: 2, state: "RUN_STATE_PAUSED" }, [4, 2]), [5, "0: 4", "1: 2"]);
 });
 
 // ---- marks, density, traces ------------------------------------------------------------------------------------
@@ -313,6 +331,12 @@ test("trails keep three simulated seconds", () => {
   assert.deepEqual([...trails.segments[11].lines.subarray(0, 4)], [585, 0, 600, 0]);
   trails.add(snapshot({ generation: 2 }).info, snapshot().organisms);
   assert.equal(trails.segments.length, 0);
+});
+
+test("trails are shorter at a high speed", () => {
+  const share = (real_time_factor) => render.trail_share({ speed: { real_time_factor }, ticks_per_s: 0, simulated_s: 1, tick: 60 });
+  assert.deepEqual([0.5, 1, 4, 16, 1000].map(share), [1, 1, 0.5, 0.25, 0.15]);
+  assert.equal(render.trail_share({ speed: { max: true }, ticks_per_s: 240, simulated_s: 1, tick: 60 }), 0.5);
 });
 
 /** A renderer that draws into `scenes`. */

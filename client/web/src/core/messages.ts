@@ -126,6 +126,13 @@ export interface Figures {
   heap_bytes: number; // 0: not known
 }
 
+/** What labels, lists and statistics show, all of one snapshot. It changes only a few times per second while the world
+ *  runs, so that it can be read. */
+export interface Reading {
+  info: SnapshotInfo;
+  healthiest: {id: number; health: number}[]; // the healthiest first
+}
+
 interface MessagesFromWorker {
   rules: {rules: Map<RequestKind, RequestRules>; roles: string[]}; // by the field of Request; roles in rising order
   state: {state: ConnectionState};
@@ -133,10 +140,8 @@ interface MessagesFromWorker {
   failed: {id: number; message: string}; // no answer can arrive any more
   events: {events: Event[]}; // of all worlds. The page answers events_taken
   /** Of the drawn snapshot; at most 20 per second. */
-  snapshot: {
-    pane: number; info: SnapshotInfo; healthiest: {id: number; health: number}[];
-    selected: {x_px: number; y_px: number; health: number} | null
-  };
+  snapshot:
+    {pane: number; info: SnapshotInfo; reading: Reading; selected: {x_px: number; y_px: number; health: number} | null};
   drawing: {pane: number; drawing: Drawing}; // after it has changed
   tiles: {pane: number; tiles: (TileInfo | null)[]}; // while all islands are shown; null: before the first snapshot
   watch_refused: {pane: number; message: string};

@@ -1,12 +1,12 @@
 // App: the layout of the page: one or two worlds at the left, the docked column at the right, banners above, notices
 // below.
 import {kind_of} from "../core/messages";
-import type {Event as WorldEvent} from "../core/protocol";
+import type {Event as WorldEvent, WorldInfo} from "../core/protocol";
 import {panels} from "../panels/all";
 import {Column} from "./column";
 import {set_attribute} from "../widgets/controls";
 import {copy_text} from "../widgets/copy";
-import {h} from "../widgets/dom";
+import {h, set_text} from "../widgets/dom";
 import {event_text, noticed_events} from "../world/event_text";
 import {EvolutionButton} from "./evolution_button";
 import {Introduction} from "./introduction";
@@ -23,7 +23,9 @@ import {PaneAreas} from "./pane_areas";
 import type {SecondWorld} from "../panels/second_world";
 import type {Server} from "../world/server";
 import {of_browser} from "../world/storage";
+import {access_texts} from "../texts/access";
 import {app_texts} from "../texts/app";
+import {column_texts} from "../texts/column";
 import {evolution_button_texts} from "../texts/evolution_button";
 import {undo_texts} from "../texts/undo";
 import {theme_button} from "../widgets/theme";
@@ -43,6 +45,7 @@ export class App implements KeyTarget {
   readonly introduction: Introduction;
 
   readonly #empty: HTMLElement;
+  readonly #about = h("p", {class: "about"});
   readonly #banners = new Banners();
   readonly #notices = new Notices();
   #help: Help|null = null;
@@ -88,8 +91,8 @@ export class App implements KeyTarget {
       h("div", {class: "app"},
         h("a", {class: "button skip", href: "#worlds", onclick: (event: Event) => skip_to(this.panes, event)},
           app_texts.skip),
-        this.#banners.element, this.panes.element, this.introduction.element, this.#show_column, this.column.element,
-        this.#notices.element);
+        h("div", {class: "top"}, this.#about, this.#banners.element), this.introduction.element, this.panes.element,
+        this.#show_column, this.column.element, this.#notices.element);
     set_attribute(this.element, "data-column", of_browser.get("column") === "collapsed" ? "collapsed" : "shown");
     server.on_change(() => this.refresh());
     server.on_event((event) => this.#announce(event));
@@ -160,15 +163,19 @@ export class App implements KeyTarget {
     return () => this.panes.focused.pane.tool === tool && tool.tool === "organism" && tool.model === model;
   };
 
-  notify: Notify = (text, holds, action) => this.#notices.show(text, holds, action);
+  notify: Notify = (text, holds, action, stays) => {
+    const take_part = {label: column_texts.take_part, act: () => this.server.set_taking_part(true)};
+    this.#notices.show(text, holds, text === access_texts.watching ? take_part : action, stays);
+  };
 
   attempt = async(what: () => Promise<unknown>): Promise<boolean> => {
+    this.#notices.forget_refusal();
     try {
       await what();
       return true;
     } catch (error) {
       const holds = (): boolean => this.server.state.phase !== "open"; // the request failed for that reason
-      this.notify(error instanceof Error ? error.message : String(error), holds() ? holds : undefined);
+      this.notify(error instanceof Error ? error.message : String(error), holds() ? holds : undefined, undefined, true);
       return false;
     }
   };
@@ -190,7 +197,10 @@ export class App implements KeyTarget {
   fork = async(name?: string): Promise<void> => {
     const server = this.server, world = this.world(), {island} = world;
     const fork = name ?? unused_name(world.name, server.world_names);
-    const act = (): Promise<unknown> => server.request("fork_world", {world: world.shown, name: fork});
+    let begin: WorldInfo = {};
+    const act = async(): Promise<void> => {
+      begin = await server.request("fork_world", {world: world.shown, name: fork});
+    };
     if (name !== undefined) {
       await act();
     } else if (!(await this.attempt(act))) {
@@ -198,7 +208,7 @@ export class App implements KeyTarget {
     }
     world.past.forked = fork;
     this.notify(app_texts.forked(fork));
-    this.show_beside(fork, island);
+    this.show_beside(fork, island).past.begin(begin);
   };
 
   // ---- links ----
@@ -256,6 +266,8 @@ export class App implements KeyTarget {
       this.evolution.refresh();
       this.#banners.set(banners_of(this.server, this.#tokens, this.#link, this.evolution, () => this.refresh()));
       this.#notices.refresh();
+      const {counts} = this.world().snapshot ?? {};
+      set_text(this.#about, app_texts.about(counts !== undefined && counts.food + counts.poison > 0));
       document.title = app_texts.title(this.world().name);
     }
   }

@@ -1,8 +1,7 @@
 // Introduction: three steps in a small card for people who see the page for the first time. The browser remembers that
 // it was shown.
 //
-// The card is next to the middle of the world, or below the world in a narrow window. It takes neither the focus nor
-// keys.
+// The card is above the world, or below it in a narrow window, and covers nothing. It takes neither the focus nor keys.
 import {introduction_steps as steps, introduction_texts as texts} from "../texts/introduction";
 import {h, set_text} from "../widgets/dom";
 import {of_browser} from "../world/storage";

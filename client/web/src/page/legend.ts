@@ -5,23 +5,25 @@ import {set_attribute} from "../widgets/controls";
 import {h, set_text, svg} from "../widgets/dom";
 import type {ViewedWorld} from "../world/world";
 
-type Mark = "organism"|"food"|"poison";
+type Mark = "organism"|"food"|"poison"|"trail";
 
 export class Legend {
   readonly element = h("div", {class: "legend"});
   readonly #organism = h("span", {});
+  readonly #trail = h("span", {class: "legend-item"}, mark("trail"), legend_texts.trail);
 
   constructor() {
     this.element.append(
       h("span", {class: "legend-item"}, mark("organism"), this.#organism),
       h("span", {class: "legend-item"}, mark("food"), legend_texts.food),
-      h("span", {class: "legend-item"}, mark("poison"), legend_texts.poison));
+      h("span", {class: "legend-item"}, mark("poison"), legend_texts.poison), this.#trail);
   }
 
   refresh(world: ViewedWorld): void {
     set_attribute(this.element, "data-skin", world.look.skin);
     set_attribute(this.element, "data-background", world.look.background);
-    set_text(this.#organism, legend_texts[world.look.skin]);
+    set_text(this.#organism, legend_texts[world.look.skin](world.feed.drawing?.health_max ?? 100));
+    this.#trail.hidden = !world.look.trails;
   }
 }
 
@@ -38,6 +40,10 @@ function mark(kind: Mark): SVGElement {
     drawing.append(
       svg("path", {class: "vivid mark-fill", d: "M-5.5 5.5C-7 -3 -2 -6.5 6 -6C6.5 2 3 6.5 -5.5 5.5Z"}),
       svg("circle", {class: "classic mark-fill", r: 4}));
+  } else if (kind === "trail") {
+    drawing.append(
+      svg("path", {class: "mark-trail", d: "M-7 5Q-3 5 0 1"}),
+      svg("path", {class: "mark-trail new", d: "M0 1Q3 -3 7 -4"}));
   } else {
     drawing.append(
       svg("path", {class: "vivid mark-fill", d: "M-6 -6L0 -2.2L6 -6L2.2 0L6 6L0 2.2L-6 6L-2.2 0Z"}),

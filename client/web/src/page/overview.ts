@@ -1,6 +1,6 @@
-// Overview: how the shown world does: its healthiest organisms and its live fitness curve. Tall windows show it above
-// the run controls, low and narrow ones as the first panel of the column.
-import {FitnessCurve} from "../plots/fitness_curve";
+// Overview: how the shown world does: its healthiest organisms and its live fitness curve. It is the first panel of the
+// column.
+import {FitnessCurve, show_generation} from "../plots/fitness_curve";
 import {column_texts as texts} from "../texts/column";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -20,9 +20,7 @@ export class Overview implements Panel {
   /** evolution: the button that shows it. */
   constructor(context: PanelContext, evolution: HTMLElement) {
     this.#context = context;
-    const height = matchMedia("(max-width: 700px)").matches ? 64 : matchMedia("(max-width: 1000px)").matches ? 84 : 132;
-    this.#curve =
-      new FitnessCurve((generation) => void context.attempt(() => context.world().past.show(generation)), height);
+    this.#curve = new FitnessCurve((generation) => void show_generation(context, generation));
     this.#buttons = Array.from(
       {length: named},
       (_, i) => h("button", {type: "button", class: "link", onclick: () => this.#select_healthiest(i)}));
@@ -37,6 +35,7 @@ export class Overview implements Panel {
       const organism = healthiest[i];
       button.hidden = !organism;
       set_text(button, organism ? texts.organism(organism.id, organism.health) : "");
+      set_attribute(button, "aria-label", organism ? texts.organism_name(organism.id, organism.health) : null);
       set_attribute(button, "aria-pressed", String(organism !== undefined && organism.id === selected));
     });
     set_text(

@@ -233,7 +233,8 @@ export class Pane {
       const places = this.tool.tool !== "remove", problem = await this.tool.use(picked);
       if (problem !== "") {
         const holds = (): boolean => this.tool.problem() === problem;
-        this.#options.notify(problem, holds() ? holds : undefined); // otherwise the server has refused it
+        this.#options.notify(
+          problem, holds() ? holds : undefined, undefined, true); // otherwise the server has refused it
       } else if (places) {
         this.#options.on_placed?.();
       }

@@ -17,6 +17,8 @@ export interface PaneAreaOptions extends Omit<PaneOptions, "world">, TimelineCon
   link(): void;
 }
 
+const narrow = 520; // CSS pixels: without room for the ticks per second
+
 function icon(...shapes: SVGElement[]): SVGElement {
   return svg("svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"}, ...shapes);
 }
@@ -42,6 +44,7 @@ export class PaneArea {
       "path", {d: "M6.5 9.5l3-3M7 5l2-2a2.8 2.8 0 0 1 4 4l-2 2M9 11l-2 2a2.8 2.8 0 0 1-4-4l2-2", class: "pane-icon"})));
   readonly #beside = icon_button("pane-beside");
   readonly #foot = h("div", {class: "strip pane-foot"});
+  readonly #start: HTMLButtonElement; // of a world that waits
   readonly #message = h("p", {class: "pane-message", role: "status"});
   readonly #caption = h("p", {class: "pane-caption", hidden: true});
 
@@ -57,12 +60,20 @@ export class PaneArea {
     set_attribute(this.#link, "aria-label", link_texts.name);
     this.#link.addEventListener("click", () => options.link());
     this.#beside.addEventListener("click", () => options.beside());
+    const start = (): void => {
+      world.server.set_taking_part(true);
+      void options.attempt(() => world.control.run());
+    };
+    this.#start =
+      h("button",
+        {type: "button", class: "button button-primary pane-start", title: pane_texts.start_help, onclick: start},
+        pane_texts.start);
     this.element =
       h("section", {class: "pane-area", "aria-label": pane_texts.world},
         h("div", {class: "strip pane-head"}, this.#generation, this.#replay, h("span", {class: "grow"}), this.#place,
           this.#state, this.#islands, this.#link, this.#beside),
-        this.#caption, h("div", {class: "pane-stage"}, this.pane.element, this.#message), this.timeline.element,
-        this.#foot);
+        this.#caption, h("div", {class: "pane-stage"}, this.pane.element, this.#message, this.#start),
+        this.timeline.element, this.#foot);
     this.set_beside(false, false);
     world.changes.listen(() => this.#refresh());
     this.#refresh();
@@ -111,18 +122,19 @@ export class PaneArea {
     set_text(this.#generation, snapshot ? pane_texts.generation(snapshot.generation) : "");
     this.#replay.hidden = !replay_of;
     set_text(this.#replay, replay_of ? pane_texts.replay_of(replay_of) : "");
-    const is_running = world.control.state === "RUN_STATE_RUNNING";
-    set_text(
-      this.#place, snapshot ? place_and_speed_text(world.name, snapshot, world.control.speed, is_running) : world.name);
+    const is_running = world.control.state === "RUN_STATE_RUNNING", with_rate = this.pane.view.size.width > narrow;
+    const place = snapshot && place_and_speed_text(world.name, snapshot, world.control.speed, is_running && with_rate);
+    set_text(this.#place, place ?? world.name);
     const is_connected = server.state.phase === "open";
     set_text(this.#state, this.#state_text() + (is_connected && is_running && info?.slowed ? pane_texts.slower : ""));
     set_attribute(this.#state, "data-state", is_connected && is_running ? "running" : "stopped");
     this.#refresh_islands();
-    const texts = snapshot ? statistics_texts(snapshot) : [];
+    const reading = world.feed.reading?.info, texts = reading ? statistics_texts(reading) : [];
     while (this.#foot.children.length > texts.length) {
       this.#foot.lastElementChild!.remove();
     }
     texts.forEach((text, i) => set_text(this.#foot.children[i] ?? this.#foot.appendChild(h("span", {})), text));
+    this.#start.hidden = world.is_replay || world.control.state !== "RUN_STATE_WAITING" || !server.may_take_part;
     const is_waiting = !snapshot && world.shown !== "" && !this.pane.tiles.is_on;
     set_text(this.#message, world.feed.problem || (is_waiting ? pane_texts.waiting : ""));
     this.#message.hidden = this.#message.textContent === "";

@@ -14,7 +14,7 @@ export class PanelTabs {
   readonly #panels: readonly Panel[];
   readonly #show: (panel: Panel) => void;
 
-  /** first: has no key, and no tab while set_first(false) holds; show: called when the user chooses a panel. */
+  /** first: has no key; show: called when the user chooses a panel. */
   constructor(first: Panel, panels: readonly Panel[], show: (panel: Panel) => void) {
     this.#panels = [first, ...panels];
     this.#show = show;
@@ -31,17 +31,9 @@ export class PanelTabs {
       const is_shown = one === panel, tab = this.#tab_of(one);
       set_attribute(tab, "aria-selected", String(is_shown));
       tab.tabIndex = is_shown ? 0 : -1;
-      one.element.hidden = !is_shown && this.body.contains(one.element);
+      one.element.hidden = !is_shown;
     }
     this.body.scrollTop = 0;
-  }
-
-  /** Whether the first panel has a tab; without one, it is outside the body, and always shown. */
-  set_first(has_tab: boolean): void {
-    const panel = this.#panels[0]!, tab = this.#tab_of(panel);
-    tab.hidden = !has_tab;
-    set_attribute(panel.element, "role", has_tab ? "tabpanel" : null);
-    set_attribute(panel.element, "aria-labelledby", has_tab ? tab.id : null);
   }
 
   #add(panel: Panel, i: number): void {
@@ -70,10 +62,10 @@ export class PanelTabs {
   }
 
   #move(event: KeyboardEvent, i: number): void {
-    const first = this.#tab_of(this.#panels[0]!).hidden ? 1 : 0, last = this.#panels.length - 1;
-    const to = event.key === "ArrowRight" || event.key === "ArrowDown" ? (i === last ? first : i + 1) :
-      event.key === "ArrowLeft" || event.key === "ArrowUp"             ? (i === first ? last : i - 1) :
-      event.key === "Home"                                             ? first :
+    const last = this.#panels.length - 1;
+    const to = event.key === "ArrowRight" || event.key === "ArrowDown" ? (i === last ? 0 : i + 1) :
+      event.key === "ArrowLeft" || event.key === "ArrowUp"             ? (i === 0 ? last : i - 1) :
+      event.key === "Home"                                             ? 0 :
       event.key === "End"                                              ? last :
                                                                          -1;
     const panel = this.#panels[to];

@@ -1,21 +1,17 @@
-// Summary: the top of the column: which world is shown, what its organisms try to do, what the marks mean, run control,
-// and taking part.
+// Summary: the top of the column: which world is shown, what its organisms try to do, what the marks mean, taking part,
+// and run control.
 import {column_texts as texts} from "../texts/column";
 import {session_text} from "../texts/users";
-import {set_attribute, set_options} from "../widgets/controls";
+import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
-import {of_browser} from "../world/storage";
 import {Legend} from "./legend";
 import {RunBar} from "./run_bar";
 import type {Tools} from "./tools";
 
 export class Summary {
   readonly element: HTMLElement;
-  /** Tall windows show the overview here. */
-  readonly details: HTMLElement;
-
   readonly #context: PanelContext;
   readonly #server: Server;
   readonly #tools: Tools;
@@ -30,7 +26,7 @@ export class Summary {
   readonly #experiment = h("p", {class: "experiment"});
   readonly #legend = new Legend();
   readonly #run_bar: RunBar;
-  readonly #part: HTMLInputElement;
+  readonly #part: HTMLButtonElement;
   readonly #part_text = h("span", {class: "hint grow"});
   readonly #session = h("span", {class: "hint session", title: texts.session});
 
@@ -40,17 +36,13 @@ export class Summary {
     this.#server = server;
     this.#tools = tools;
     this.#run_bar = new RunBar(context);
-    this.#part =
-      h("input", {type: "checkbox", role: "switch", onchange: () => server.set_taking_part(this.#part.checked)});
-    this.details = h("div", {class: "summary-details", id: "summary-details"}, this.#experiment, this.#legend.element);
-    this.element =
-      h("div", {class: "summary"},
-        h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,
-          details_button(this.details), ...head),
-        this.details, this.#run_bar.element,
-        h("div", {class: "row part"}, h("label", {class: "check"}, this.#part, texts.take_part), this.#part_text,
-          this.#session),
-        tools.element);
+    this.#part = h("button", {type: "button", onclick: () => server.set_taking_part(!server.taking_part)});
+    this.element = h(
+      "div", {class: "summary"},
+      h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,
+        ...head),
+      this.#experiment, this.#legend.element, h("div", {class: "row part"}, this.#part, this.#part_text, this.#session),
+      this.#run_bar.element, tools.element);
   }
 
   refresh(): void {
@@ -61,8 +53,9 @@ export class Summary {
     set_text(this.#experiment, world.parameters.experiment || state_text);
     this.#legend.refresh(world);
     this.#run_bar.refresh();
-    this.#part.checked = taking_part;
-    this.#part.disabled = !server.may_take_part;
+    this.#part.hidden = !server.may_take_part;
+    this.#part.className = taking_part ? "button" : "button button-primary";
+    set_text(this.#part, taking_part ? texts.only_watch : texts.take_part);
     const part_text = state.phase !== "open" ? texts.no_connection :
       !server.may_take_part                  ? texts.is_viewer :
       taking_part                            ? texts.takes_part :
@@ -86,28 +79,4 @@ export class Summary {
       this.#island, Array.from({length: islands}, (_, i) => ({value: String(i), text: texts.island_named(i)})),
       String(world.island));
   }
-}
-
-/** The button that hides or shows the description in a tall window. The browser remembers what the user has chosen. */
-function details_button(details: HTMLElement): HTMLButtonElement {
-  const button = h("button", {
-    type: "button",
-    class: "button button-quiet square tall-only",
-    "aria-controls": details.id,
-    onclick: () => {
-      const is_shown = details.dataset.folded === "true";
-      of_browser.set("details", is_shown ? "" : "hidden");
-      set_shown(is_shown);
-    }
-  });
-  const set_shown = (is_shown: boolean): void => {
-    set_attribute(details, "data-folded", String(!is_shown));
-    set_text(button, is_shown ? "▴" : "▾");
-    set_attribute(button, "aria-expanded", String(is_shown));
-    const label = is_shown ? texts.hide_description : texts.show_description;
-    set_attribute(button, "aria-label", label);
-    set_attribute(button, "title", label);
-  };
-  set_shown(of_browser.get("details") !== "hidden");
-  return button;
 }

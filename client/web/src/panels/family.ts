@@ -6,6 +6,7 @@ import type {OrganismName} from "../family/lineage";
 import {ShownTree} from "../family/shown_tree";
 import type {FamilyTree, Place} from "../family/spot";
 import {place_of} from "../family/tree";
+import {origin_run_of} from "../world/origin";
 import {family_texts} from "../texts/family";
 import {h, set_text} from "../widgets/dom";
 import {hint, row} from "../widgets/form";
@@ -18,6 +19,7 @@ import {FamilyMarks, organism_at} from "./family_marks";
 import {FamilyNote} from "./family_note";
 import {FamilyStatus} from "./family_status";
 import {FamilyTable} from "./family_table";
+import {OriginNote} from "./origin_note";
 import {Width} from "./width";
 
 const zoom_of_button = 1.5;
@@ -40,6 +42,9 @@ export class FamilyPanel implements Panel {
     go_to: (at) => this.#go_to(at),
     mark: (at) => this.#mark(at),
   });
+  readonly #origin: OriginNote;
+  #origin_run = ""; // of which the world is a fork, if the tree ends at the fork
+  #origin_asked = "";
   readonly #reroot = h("button", {class: "button", onclick: () => this.#take_shown()});
   readonly #legend = h("p", {class: "hint family-legend", role: "group", "aria-label": family_texts.legend});
   readonly #tree_parts: HTMLElement;
@@ -48,10 +53,11 @@ export class FamilyPanel implements Panel {
 
   constructor(context: PanelContext) {
     this.#context = context;
+    this.#origin = new OriginNote(context, () => undefined);
     const button = (text: string, label: string, act: () => void): HTMLElement =>
       h("button", {class: "button", title: label, "aria-label": label, onclick: act}, text);
     this.#tree_parts =
-      h("div", {class: "panel"}, this.#status.loaded, this.#status.sentence,
+      h("div", {class: "panel"}, this.#status.loaded, this.#origin.element, this.#status.sentence,
         row(
           button("−", family_texts.zoom_out, () => this.#drawing.zoom(1 / zoom_of_button)),
           button("+", family_texts.zoom_in, () => this.#drawing.zoom(zoom_of_button)),
@@ -92,6 +98,7 @@ export class FamilyPanel implements Panel {
     this.#tree_parts.hidden = !shown.tree;
     if (shown.tree) {
       this.#draw(world, shown.tree);
+      this.#show_origin(world, shown.tree);
     } else {
       this.#drawing.show(null, "");
       this.#table.show(null);
@@ -175,6 +182,22 @@ export class FamilyPanel implements Panel {
     this.#drawing.element.dataset.layoutMs = this.#shown.layout_ms.toFixed(1); // for measurements
     this.#note.show({tree, of_all, marks, colouring, colour_by, genes: this.#data.genes, gene_names: world.gene_names});
     this.#table.show({tree, of_all, of_two: marks.of_two});
+  }
+
+  /** Says where the earlier ancestors are if the tree ends because the world is a fork. */
+  #show_origin({server, shown}: ViewedWorld, {first_generation, rows}: FamilyTree): void {
+    const generation = first_generation - 1, {lineage} = this.#data, asked = `${this.#subject?.run_id} ${generation}`;
+    const ends = lineage !== null && lineage.first_generation <= generation && lineage.generations_left_out === 0 &&
+      rows[0]!.some(({ancestor: {origin}}) => origin !== "initial" && origin !== "placed");
+    if (ends && asked !== this.#origin_asked) {
+      this.#origin_asked = asked;
+      this.#origin_run = "";
+      server.request("get_breeding", {world: shown, generation}).catch((error: unknown) => {
+        this.#origin_run = asked === this.#origin_asked ? origin_run_of(error) : this.#origin_run;
+        this.refresh();
+      });
+    }
+    this.#origin.update(ends ? this.#origin_run : "", generation);
   }
 
   // ---- one organism ----

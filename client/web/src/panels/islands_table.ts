@@ -42,10 +42,12 @@ export class IslandsTable {
 
   #row(statistics: Statistics, island: number): TableRow {
     const is_this = (one: {island?: number}): boolean => (one.island ?? 0) === island;
-    const live = statistics.live?.find(is_this), last = statistics.last?.find(is_this);
+    const {island: shown, feed: {reading}} = this.#context.world();
+    const live = (island === shown ? reading?.info.live : undefined) ?? statistics.live?.find(is_this);
+    const last = statistics.last?.find(is_this);
     return {
       name: texts.island(island),
-      chosen: island === this.#context.world().island,
+      chosen: island === shown,
       act: () => this.#context.world().choose_island(island),
       cells: [
         live ? texts.alive(live.alive_count ?? 0, live.organism_count ?? 0) : "",

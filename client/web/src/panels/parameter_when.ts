@@ -27,7 +27,7 @@ export class ParameterWhen {
   constructor(context: PanelContext, on_change: () => void) {
     this.#context = context;
     this.#on_change = on_change;
-    this.element = h("label", {class: "row"}, h("span", {}, texts.label), this.#kind, this.#number);
+    this.element = h("div", {class: "row"}, this.#kind, this.#number);
   }
 
   /** Whether the edits are planned rather than applied now. */

@@ -50,12 +50,12 @@ export class ParametersPanel implements Panel {
     this.#when = new ParameterWhen(context, () => this.touch());
     this.#planned = new PlannedChanges((change) => void this.#exchange.cancel(change));
     this.element =
-      h("div", {class: "panel parameters"}, this.#reason,
-        h("div", {class: "parameters-head"},
-          row(this.#apply_button, this.#discard_button, this.#undo_button, this.#redo_button), this.#problem,
-          this.#status),
-        row(this.#when.element, check(this.#at_once, texts.at_once, texts.at_once_help)),
-        this.#planned.element, this.#list.search, this.#list.element, this.#list.nothing_found);
+      h("div", {class: "panel parameters"},
+        h("div", {class: "parameters-head"}, this.#list.search,
+          row(this.#apply_button, this.#when.element, this.#discard_button, this.#undo_button, this.#redo_button,
+            check(this.#at_once, texts.at_once, texts.at_once_help)),
+          this.#problem, this.#reason, this.#status),
+        this.#planned.element, this.#list.element, this.#list.nothing_found);
     context.server.on_event((event) => {
       this.#changed = this.#exchange.take_event(event) || this.#changed;
     });
@@ -157,7 +157,8 @@ export class ParametersPanel implements Panel {
     set_text(this.#problem, edits.problem === "" ? "" : `${edits.problem}.`);
     set_text(
       this.#status,
-      !edits.known  ? texts.loading :
+      why_not       ? "" :
+        !edits.known ? texts.loading :
         edits.busy  ? texts.sending :
         count === 0 ? texts.revision(edits.revision) :
                       texts.edits(count));

@@ -3,6 +3,7 @@
 import {marks_of} from "../plots/change_marks";
 import {Comparison} from "../plots/comparison";
 import {extinctions, figure_of, quantities} from "../plots/figures";
+import {show_generation} from "../plots/fitness_curve";
 import {history_csv} from "../plots/history_csv";
 import {HistoryTable} from "../plots/history_table";
 import {Plot} from "../plots/plot";
@@ -11,6 +12,7 @@ import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {h, set_text} from "../widgets/dom";
 import {accept_drops, save_file} from "../widgets/files";
 import {row} from "../widgets/form";
+
 import type {Panel, PanelContext} from "../world/panel_context";
 import {QuantityTabs, IslandAndMeanChoice} from "./plots_choices";
 import {CompareChoice} from "./plots_compare";
@@ -33,10 +35,8 @@ export class PlotsPanel implements Panel {
   readonly #explanation = h("p", {class: "hint"});
   readonly #content = h("div", {class: "panel"}, this.#genes.element, this.#explanation);
   readonly #tabs = new QuantityTabs(this.#content, () => this.#rebuild());
-  readonly #plot = new Plot({
-    height: plot_height,
-    on_click: (generation) => void this.#context.attempt(() => this.#context.world().past.show(generation))
-  });
+  readonly #plot =
+    new Plot({height: plot_height, on_click: (generation) => void show_generation(this.#context, generation)});
   readonly #histogram = new GeneHistogram();
   readonly #known = h("p", {class: "hint"});
   readonly #table = new HistoryTable();
@@ -149,7 +149,8 @@ export class PlotsPanel implements Panel {
         quantity === "selection" && this.#table.generation_count > 0 ? texts.from_second :
                                                                        texts.none_ended;
       const content = figure_of({quantity, subject, other, genes, gene, window});
-      this.#plot.set_content({...content, note_end: plot_texts.click_shows, empty});
+      this.#plot.set_content(
+        {...content, note_end: plot_texts.click_shows(this.#context.world().past.range?.first_generation ?? 1), empty});
       set_text(
         this.#explanation,
         quantity !== "selection" ? "" :

@@ -89,7 +89,7 @@ export class WorldsPanel implements Panel {
     const listed = server.worlds.filter((one) => !one.replay || one.name === world.name);
     return [
       ...listed.map((info) => {
-        const live = info.name === world.shown && world.snapshot;
+        const live = info.name === world.shown && world.feed.reading?.info;
         return row(info.name, [
           state_word(live ? world.control.state : info.state, server.storage, info.awaited_fitness !== undefined),
           with_separators(live ? live.generation : info.generation ?? 0),

@@ -22,7 +22,7 @@ const image_margin = 14; // pixels
 
 export interface PlotOptions {
   height: number; // CSS pixels, without the legend
-  axes?: boolean; // false: only the lines and marks
+  axes?: boolean; // false: the axes have only numbers, the legend contains the title, and nothing zooms
   link?: LinkedX; // shared by plots that show the same part of the x axis
   on_click?: (x: number) => void; // the user chose these numbers
 }
@@ -49,7 +49,7 @@ export class Plot implements LinkedPlot {
 
   constructor(options: PlotOptions) {
     this.#options = options;
-    this.#area.style.height = `${options.height}px`;
+    this.#area.style.minHeight = `${options.height}px`;
     this.#legend = new PlotLegend(options.axes === false, () => this.redraw());
     this.element = h("div", {class: "plot"}, this.#legend.element, this.#area, this.#cursor.note.element);
     this.#link = options.link ?? new LinkedX();

@@ -50,7 +50,7 @@ export interface PlotView {
   content: PlotContent;
   visible: Series[]; // those that the user has not switched off
   highlighted: string; // name of the series whose entry in the legend is pointed at; empty: none
-  axes: boolean; // false: only the lines and marks
+  axes: boolean; // false: the axes have only numbers, and nothing zooms
 }
 
 /** Returns the series that the legend lists. */

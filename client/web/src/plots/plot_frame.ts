@@ -22,15 +22,12 @@ export function lay_out(view: PlotView, x: Range, box: Box, width_of: (text: str
   const columns = Math.max(Math.round(box.right - box.left), 1);
   const groups = new Map(view.visible.map((series) => [series, groups_of(series.x, x, columns)]));
   const y = y_range(view, groups);
-  if (!view.axes) {
-    const area = {left: box.left + 1, top: box.top + 1, right: box.right - 1, bottom: box.bottom - 1};
-    return {x, y, area, groups};
-  }
+  const [above, below] = view.axes ? [18, 34] : [5, 20];
   const area = {
     left: box.left,
-    top: box.top + 18,
+    top: box.top + above,
     right: Math.max(box.right - 8, box.left + 1),
-    bottom: Math.max(box.bottom - 34, box.top + 19)
+    bottom: Math.max(box.bottom - below, box.top + above + 1)
   };
   const ticks = y_ticks(y, area);
   const widest = Math.max(0, ...ticks.at.map((tick) => width_of(tick_label(tick, ticks.step))));

@@ -30,7 +30,7 @@ export function paint_plot(
   const width = area.right - area.left, height = area.bottom - area.top;
   context.fillStyle = theme.surface;
   context.fillRect(area.left, area.top, width, height);
-  if (view.axes) {
+  if (view.axes || view.visible.length > 0) {
     paint_axes(sheet, box);
   }
   context.save();
@@ -71,7 +71,11 @@ function paint_axes({context, theme, view, frame}: Sheet, box: Box): void {
   context.lineWidth = 1;
   context.textAlign = "left";
   context.fillStyle = theme.quiet;
-  context.fillText(view.content.y_label, box.left, box.top + 11, box.right - box.left);
+  if (view.axes) {
+    context.fillText(view.content.y_label, box.left, box.top + 11, box.right - box.left);
+    context.textAlign = "center";
+    context.fillText(view.content.x_label, (area.left + area.right) / 2, area.bottom + 30);
+  }
   const of_y = y_ticks(frame.y, area);
   context.strokeStyle = theme.grid;
   context.beginPath();
@@ -99,8 +103,6 @@ function paint_axes({context, theme, view, frame}: Sheet, box: Box): void {
     const half = context.measureText(label).width / 2;
     context.fillText(label, Math.min(column(frame, tick), box.right - half), area.bottom + 16);
   }
-  context.fillStyle = theme.quiet;
-  context.fillText(view.content.x_label, (area.left + area.right) / 2, area.bottom + 30);
   context.textAlign = "left";
 }
 
@@ -227,7 +229,7 @@ function paint_marks(sheet: Sheet): void {
     lines.forEach((at, i) => {
       paint_mark(sheet, at, index === 0);
       const label = index === 0 ? marks.find((mark) => mark.x === at)?.label : undefined;
-      if (label !== undefined && view.axes) {
+      if (label !== undefined) {
         const left = Math.max(labelled_until, i > 0 ? column(frame, lines[i - 1]!) + mark_pixels : area.left);
         const right = i + 1 < lines.length ? column(frame, lines[i + 1]!) - mark_pixels : area.right;
         labelled_until = paint_label(sheet, label, Math.round(column(frame, at)) + 0.5, left, right) ?? labelled_until;

@@ -15,6 +15,7 @@ import {
   few_organisms,
   heading_zoom_min,
   is_kept,
+  item_pixels_min,
   item_dots_max,
   outline_zoom_min,
   seen_pixels_min,
@@ -145,6 +146,7 @@ export class GlIsland implements Painter {
       shapes.clip_to_place();
     }
     this.#draw_highlights(scene, of_overlay);
+    this.#overlays.draw_label_grounds(scene);
     this.#text.draw(scene);
     this.#minimap.draw(scene);
     this.#overlays.draw_preview(scene);
@@ -243,10 +245,11 @@ export class GlIsland implements Painter {
     const small = too_small_to_see(camera);
     // The same share of both, so that the dots show which kind is more frequent.
     const share = small ? item_dots_max / Math.max(latest.food.count, latest.poison.count, 1) : 1;
+    const least = latest.count <= few_organisms && scene.place.has_details ? item_pixels_min(camera) : 0;
     const in_sight = this.#is_island_in_sight(scene);
     const draw = (filled: Filled, points: Points, kept: number, style: ShapeStyle, radius_px: number) => {
       this.#fill_points(filled, `${scene.snapshot_version} ${kept}`, points, kept);
-      const item_half = radius_px * camera.zoom * scene.place.ratio;
+      const item_half = Math.max(radius_px * camera.zoom, least) * scene.place.ratio;
       this.#shapes.draw(
         filled.table, filled.count, style, projection, {item_half, half_max: item_half, as_points: in_sight});
     };
@@ -301,11 +304,11 @@ export class GlIsland implements Painter {
       coloured,
       health_share: 1 / (steps_per_px * scene.health_max),
       edge_pixels: coloured && camera.zoom < outline_zoom_min ? 0 : undefined,
-      half_pixels_min: has_headings || count <= few_organisms ? seen_pixels_min : undefined,
+      half_pixels_min: has_headings || count <= few_organisms ? seen_pixels_min(camera) : undefined,
       half_max: this.#radius_max * projection.zoom,
       as_points: this.#is_island_in_sight(scene),
     });
-    const radius_pixels = Math.max(typical_radius_px * camera.zoom, seen_pixels_min);
+    const radius_pixels = Math.max(typical_radius_px * camera.zoom, seen_pixels_min(camera));
     if (has_headings && camera.zoom >= heading_zoom_min) { // lines of small organisms are shorter and thinner
       this.#shapes.draw(table, count, styles.heading, projection, {
         moving: true,

@@ -3,6 +3,7 @@ import {steps_per_px} from "../core/snapshot";
 
 import {visible_part} from "./camera";
 import {GlShapes, Projection, Table} from "./gl_shapes";
+import {label_height} from "./glyphs";
 import {with_room} from "./interpolator";
 import {packed, ShapeStyle, with_alpha} from "./look";
 import {may_touch} from "./marks";
@@ -14,12 +15,22 @@ import {
   colour_of_choice,
   perception_px_max,
   Scene,
-  trail_alpha
+  trail_alpha,
+  trail_share
 } from "./scene";
-import {add_paths, flash_shown_s, trail_kept_s} from "./traces";
+import {add_paths, flash_shown_s, trail_interval_s, trail_kept_s} from "./traces";
 
 /** Per px of the island, or per pixel: finer than positions in snapshots, as overlays are at interpolated places. */
 export const overlay_steps = 1024;
+
+/** Of overlays in device pixels of the place. */
+const of_pixels: Projection = {
+  centre_x: 0,
+  centre_y: 0,
+  origin_x: 0,
+  origin_y: 0,
+  zoom: 1 / overlay_steps
+};
 
 /** Shapes that are computed in each frame. */
 class Overlay {
@@ -116,9 +127,14 @@ export class GlOverlays {
     if (trails === null) {
       return;
     }
-    const style = scene.styles.trail;
-    const now_s = at.latest.info!.simulated_s;
-    for (const segment of trails.segments) {
+    const info = at.latest.info!, now_s = info.simulated_s, share = trail_share(info), kept_s = trail_kept_s * share;
+    const of_look = scene.styles.trail;
+    const style = {
+      ...of_look,
+      fill: with_alpha(of_look.fill, of_look.fill[3] * (0.5 + share / 2)),
+      line_pixels: of_look.line_pixels * Math.sqrt(share)
+    };
+    for (const segment of trails.segments.filter(({from_s}) => from_s >= now_s - kept_s - trail_interval_s)) {
       let slot = this.#trails.find(({serial}) => serial === segment.serial);
       if (slot === undefined) {
         slot = this.#trails.find(({serial}) => trails.segments.every((other) => other.serial !== serial));
@@ -129,7 +145,7 @@ export class GlOverlays {
         slot.serial = segment.serial;
         slot.table.update(segment.lines, segment.count);
       }
-      const fill = with_alpha(style.fill, trail_alpha(style.fill[3], now_s - segment.to_s, trail_kept_s));
+      const fill = with_alpha(style.fill, trail_alpha(style.fill[3], now_s - segment.to_s, kept_s));
       this.#shapes.draw(slot.table, segment.count, style, projection, {fill});
     }
     // From the last kept positions to the present ones.
@@ -190,6 +206,17 @@ export class GlOverlays {
     arrows.draw(this.#shapes, scene.styles.arrow, projection, true);
   }
 
+  /** Draws the background of the labels that name an organism. */
+  draw_label_grounds({labels, place: {ratio}, styles, colours}: Scene): void {
+    const overlay = this.begin("labels"), half_height = (label_height / 2) * ratio;
+    for (const {left, top, width} of labels.filter(({is_named}) => is_named)) {
+      const half_width = (width / 2) * ratio;
+      overlay.push(left * ratio + half_width, top * ratio + half_height, half_width + 3 * ratio, half_height);
+    }
+    overlay.draw(
+      this.#shapes, {...styles.obstacle, fill: with_alpha(colours.ground, 215), half_pixels_min: 0}, of_pixels);
+  }
+
   draw_preview({preview, place: {ratio}, styles}: Scene): void {
     if (preview === null) {
       return;
@@ -203,6 +230,6 @@ export class GlOverlays {
       edge_pixels: 2,
       half_pixels_min: 3
     };
-    overlay.draw(this.#shapes, style, {centre_x: 0, centre_y: 0, origin_x: 0, origin_y: 0, zoom: 1 / overlay_steps});
+    overlay.draw(this.#shapes, style, of_pixels);
   }
 }

@@ -1,7 +1,7 @@
 // Glyphs: the characters of labels as an atlas, drawn at the size of device pixels, so that text is sharp at any pixel
 // ratio.
 
-const characters = "#0123456789 ";
+const characters = "#0123456789 ♥";
 const font_pixels = 13;
 const font = (pixels: number) => `${pixels}px system-ui, "DejaVu Sans", sans-serif`;
 

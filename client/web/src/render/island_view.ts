@@ -1,11 +1,12 @@
 // IslandView: one island in a rectangle of the canvas: its camera, its scene for a painter, and what is at a point of
 // it.
-import type {Camera, Drawing, Look, PopulationColumns, Tool} from "../core/messages";
+import type {Camera, Drawing, Look, PopulationColumns, Reading, Tool} from "../core/messages";
 import {type Snapshot, type SnapshotInfo, steps_per_px} from "../core/snapshot";
 import {clamped, fitted, type Place, type Point, visible_part} from "./camera";
 import {Colouring} from "./colouring";
 import {count_organisms, density_scale, DensityGrid, join_tiles} from "./density";
 import {Description} from "./description";
+import {continues} from "./interpolator";
 import {colours_of, default_look, island_colours, styles_of} from "./look";
 import {dots_radius_pixels, shows_details, too_many_for_dots, too_small_to_see, typical_radius_px} from "./marks";
 import {MinimapGrid} from "./minimap";
@@ -84,6 +85,13 @@ export class IslandView {
     this.island.clear();
     this.region.forget();
     this.#is_dirty = true;
+  }
+
+  /** What the page shows of this snapshot, as the labels of the next frame do. */
+  read(info: SnapshotInfo, now_ms: number): Reading {
+    const before = this.island.reading, reading = this.island.read(info, now_ms);
+    this.#is_dirty ||= reading !== before;
+    return reading;
   }
 
   /** Whether draw() would draw something else than the last time. */
@@ -174,7 +182,7 @@ export class IslandView {
   }
 
   #scene(camera: Camera, blend: number, painter: Painter): Scene {
-    const {at, trails, flashes, health_max, version} = this.island;
+    const {at, trails, flashes, health_max, reading, version} = this.island;
     const {look, place, pointer, tool, selected, hovered} = this.settings, {latest} = at;
     const population = this.#current_population();
     this.#colouring.update(
@@ -192,6 +200,7 @@ export class IslandView {
       colours_version: this.#colouring.version,
       organism_colours: this.#colouring.colours,
       health_max,
+      healthiest: reading !== null && continues(latest.info!, reading.info) ? reading.healthiest : [],
       selected: latest.index_of(selected),
       pointed_at: pointer !== null && tool === "select" ? organism_at(pointer, hover_radius, camera, place, at, blend) :
                                                           latest.index_of(hovered),

@@ -5,6 +5,7 @@ import type {KeptSnapshot} from "./interpolator";
 
 export interface Label {
   text: string;
+  is_named: boolean; // it is drawn on a background
   x: number; // centre of the organism on the screen
   y: number;
   radius: number;
@@ -31,9 +32,10 @@ export function healthiest(snapshot: KeptSnapshot, count: number): number[] {
   return best;
 }
 
-/** Places each label above its organism, or below it if it would overlap a wall or an earlier label there. If it
- *  overlaps one at both places, it is above. `walls`: the part of the screen inside the walls. */
-export function place_labels(labels: Label[], height: number, walls: Rectangle): void {
+/** Places each label above its organism, below it, or next to it, where it overlaps no wall and no earlier label.
+ *  Returns the labels that have such a place, and always the first one. `walls`: the part of the screen inside the
+ *  walls. */
+export function place_labels(labels: Label[], height: number, walls: Rectangle): Label[] {
   const cell = labels.reduce((most, {width}) => Math.max(most, width), height);
   const cells = new Map<number, Label[]>(); // by the cell of the upper left corner; no label is wider than a cell
   const index = (place: number) => Math.floor(place / cell);
@@ -52,21 +54,23 @@ export function place_labels(labels: Label[], height: number, walls: Rectangle):
     }
     return false;
   };
-  for (const label of labels) {
-    const right = walls.left + walls.width - label.width - 1;
-    const left = Math.max(Math.min(label.x - label.width / 2, right), walls.left + 1);
-    const above = label.y - label.radius - height - 1;
-    const below = label.y + label.radius + 1;
-    const above_is_free = above >= walls.top && !collides(left, above, label.width);
-    const below_is_free = below + height <= walls.top + walls.height && !collides(left, below, label.width);
-    label.left = left;
-    label.top = !above_is_free && (below_is_free || above < walls.top) ? below : above;
-    const place = key(index(label.top), index(label.left));
-    const there = cells.get(place);
-    if (there === undefined) {
-      cells.set(place, [label]);
-    } else {
-      there.push(label);
+  return labels.filter((label, i) => {
+    const {x, y, radius, width} = label;
+    const left_most = walls.left + 1, right_most = walls.left + walls.width - width - 1;
+    const middle = Math.max(Math.min(x - width / 2, right_most), left_most);
+    const places: [left: number, top: number][] = [
+      [middle, y - radius - height - 1], [middle, y + radius + 1], [x + radius + 2, y - height / 2],
+      [x - radius - 2 - width, y - height / 2]
+    ];
+    const place = places.find(
+      ([left, top]) => left >= left_most && left <= Math.max(right_most, left_most) && top >= walls.top &&
+        top + height <= walls.top + walls.height && !collides(left, top, width));
+    if (place === undefined && i > 0) {
+      return false;
     }
-  }
+    [label.left, label.top] = place ?? places[0]!;
+    const at = key(index(label.top), index(label.left));
+    cells.set(at, [...cells.get(at) ?? [], label]);
+    return true;
+  });
 }

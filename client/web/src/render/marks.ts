@@ -6,7 +6,6 @@ import {Rectangle, Size, visible_part} from "./camera";
 
 /** Radius of a typical organism. If it is below one pixel on the screen, organisms are too small to see one by one. */
 export const typical_radius_px = 10;
-export const seen_pixels_min = 3; // radius of an organism with a heading, or of one among few, so that its body is seen
 export const few_organisms = 300;
 export const heading_zoom_min = 0.1; // at a smaller zoom, headings are not drawn
 /** While organisms are too small to see, at most about this many dots of food are drawn, and of poison. */
@@ -23,6 +22,17 @@ export const ranked_max = 2_000;
 export const named_count = 3; // the labels of this many of the healthiest organisms contain their ids
 /** Organisms smaller than this on the screen are streamed as dots. */
 export const dots_radius_pixels = 2;
+
+/** Least radius on the screen of an organism with a heading, or of one among few, so that its body and arc are seen. A
+ *  crowded small island has smaller ones. */
+export function seen_pixels_min({zoom}: Camera): number {
+  return Math.min(Math.max(13 * zoom, 3), 4.5);
+}
+
+/** Least half size on the screen of food and poison among few organisms. */
+export function item_pixels_min({zoom}: Camera): number {
+  return Math.min(7 * zoom, 2.4);
+}
 
 export function too_small_to_see(camera: Camera): boolean {
   return typical_radius_px * camera.zoom < 1;

@@ -1,5 +1,6 @@
 // Scene: everything that a painter draws in one frame. The renderer prepares it; GlIsland draws it.
-import type {Camera, Look, PopulationColumns} from "../core/messages";
+import type {Camera, Look, PopulationColumns, Reading} from "../core/messages";
+import type {SnapshotInfo} from "../core/snapshot";
 import type {MinimapPlace, Place, Rectangle, Size} from "./camera";
 import type {DensityGrid} from "./density";
 import type {Interpolator} from "./interpolator";
@@ -20,6 +21,7 @@ export interface Scene {
   colours_version: number; // changes with organism_colours
   organism_colours: Int32Array|null; // packed, by row of the latest snapshot; null: no colouring
   health_max: number; // the arc of a body is complete at this health
+  healthiest: Reading["healthiest"];
   selected: number; // rows of the latest snapshot; -1: none
   pointed_at: number;
   population: PopulationColumns|null; // of the shown generation
@@ -87,6 +89,13 @@ export const perception_px_max = 200;
 
 export function colour_of_choice(choice: number, colours: IslandColours): Colour {
   return choice === choice_seek ? colours.seeks : choice === choice_flee ? colours.flees : colours.wanders;
+}
+
+/** How much of a trail is drawn: all of it up to real time, less at a higher speed, because whole trails would cover
+ *  the organisms. */
+export function trail_share({speed, ticks_per_s, simulated_s, tick}: SnapshotInfo): number {
+  const measured = tick > 0 ? (ticks_per_s * simulated_s) / tick : 1;
+  return Math.min(1, Math.max(1 / Math.sqrt(speed?.real_time_factor ?? measured), 0.15));
 }
 
 /** A trail whose end is older is fainter. */

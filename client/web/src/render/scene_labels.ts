@@ -5,9 +5,9 @@ import {steps_per_px} from "../core/snapshot";
 import {visible_part} from "./camera";
 import {label_height} from "./glyphs";
 
-import {healthiest, type Label, place_labels} from "./labels";
+import {type Label, place_labels} from "./labels";
 import type {ShapeStyle} from "./look";
-import {labels_are_readable, named_count, ranked_max, shown_health} from "./marks";
+import {few_organisms, labels_are_readable, named_count, ranked_max, seen_pixels_min, shown_health} from "./marks";
 import {inside_walls, type Painter, type Scene} from "./scene";
 
 /** The radius of a mark on the screen, with the arc around a body. */
@@ -34,26 +34,32 @@ function readable_rows({at, blend, camera, place, styles}: Scene): number[]|null
 
 export function labels_of(scene: Scene, painter: Painter): Label[] {
   const {at, blend, camera, styles, place} = scene, {latest} = at;
-  const named = latest.count <= ranked_max ? healthiest(latest, named_count) : [];
-  for (const row of [scene.selected, scene.pointed_at]) {
-    if (row >= 0 && !named.includes(row)) {
-      named.push(row);
+  const named = new Map<number, number>(); // health by row; first those whose labels must not be left out
+  for (const row of [scene.selected, scene.pointed_at].filter((one) => one >= 0)) {
+    named.set(row, shown_health(latest.health[row]!));
+  }
+  for (const {id, health} of latest.count <= ranked_max ? scene.healthiest.slice(0, named_count) : []) {
+    const row = latest.index_of(id);
+    if (row >= 0) {
+      named.set(row, Math.ceil(health));
     }
   }
   const inside = inside_walls(scene, {width: latest.info!.width_px, height: latest.info!.height_px});
-  const labels = (readable_rows(scene) ?? named).map((row): Label => {
-    const health = String(shown_health(latest.health[row]!));
-    const text = named.includes(row) ? `#${latest.id[row]!} ${health}` : health;
+  const least = latest.count <= few_organisms ? seen_pixels_min(camera) : 0;
+  const rows = new Set([...named.keys(), ...readable_rows(scene) ?? []]);
+  const labels = [...rows].map((row): Label => {
+    const health = named.get(row);
+    const text = health === undefined ? String(shown_health(latest.health[row]!)) : `#${latest.id[row]!} ♥${health}`;
     return {
       text,
+      is_named: health !== undefined,
       x: inside.left + (at.x_at(row, blend) / steps_per_px) * camera.zoom,
       y: inside.top + (at.y_at(row, blend) / steps_per_px) * camera.zoom,
-      radius: radius_with_arc((latest.radius[row]! / steps_per_px) * camera.zoom, styles.organism),
+      radius: radius_with_arc(Math.max((latest.radius[row]! / steps_per_px) * camera.zoom, least), styles.organism),
       width: painter.measure(text, place.ratio),
       left: 0,
       top: 0,
     };
   });
-  place_labels(labels, label_height, inside);
-  return labels;
+  return place_labels(labels, label_height, inside);
 }

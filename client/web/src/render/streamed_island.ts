@@ -2,14 +2,16 @@
 // scale of health.
 //
 // add() copies what it needs: the decoder may reuse the columns of the snapshot.
-import type {Camera, Look} from "../core/messages";
-import {type Snapshot, steps_per_px} from "../core/snapshot";
+import type {Camera, Look, Reading} from "../core/messages";
+import {type Snapshot, type SnapshotInfo, steps_per_px} from "../core/snapshot";
 import {type Size, visible_part} from "./camera";
-import {Interpolator, KeptSnapshot} from "./interpolator";
+import {continues, Interpolator, KeptSnapshot} from "./interpolator";
 import {healthiest} from "./labels";
 import {health_scale_max, shows_details, traced_max} from "./marks";
 import {region_around} from "./streamed_region";
 import {Flashes, traced, Trails} from "./traces";
+
+const healthiest_count = 5, reading_ms = 400;
 
 export class StreamedIsland {
   readonly at = new Interpolator();
@@ -17,6 +19,8 @@ export class StreamedIsland {
   readonly flashes = new Flashes();
   version = 0; // changes with the snapshots
   health_max = 100;
+  reading: Reading|null = null; // the last one that read() returned
+  #read_ms = 0;
   /** Densities of the whole island, while only a part is streamed. */
   whole: KeptSnapshot|null = null;
   whole_version = 0;
@@ -52,7 +56,7 @@ export class StreamedIsland {
     this.at.clear();
     this.trails.clear();
     this.flashes.clear();
-    this.whole = null;
+    this.whole = this.reading = null;
     ++this.version;
   }
 
@@ -67,10 +71,20 @@ export class StreamedIsland {
     return Math.max(info?.counts.organisms ?? 0, info?.live?.organism_count ?? 0, count);
   }
 
-  /** The `count` healthiest organisms, the healthiest first. */
-  healthiest(count: number): {id: number; health: number}[] {
+  /** What the page shows now. The labels show it, too, until the generation ends. */
+  read(info: SnapshotInfo, now_ms: number): Reading {
+    const {reading} = this, is_running = info.state === "RUN_STATE_RUNNING";
+    if (reading !== null && is_running && continues(info, reading.info) && now_ms < this.#read_ms + reading_ms) {
+      return reading;
+    }
+    this.#read_ms = now_ms;
+    return (this.reading = {info, healthiest: this.#healthiest()});
+  }
+
+  #healthiest(): Reading["healthiest"] {
     const {latest} = this.at;
-    return healthiest(latest, count).map((row) => ({id: latest.id[row]!, health: latest.health[row]! / steps_per_px}));
+    return healthiest(latest, healthiest_count)
+      .map((row) => ({id: latest.id[row]!, health: latest.health[row]! / steps_per_px}));
   }
 
   /** The place and the health of a living organism. */

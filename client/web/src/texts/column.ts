@@ -13,24 +13,25 @@ export const column_texts = {
   is_damaged: "This world is damaged and does not run.",
   loading: "Loading the experiment …",
   none_open: "No world is open yet.",
-  hide_description: "Hide the description",
-  show_description: "Show the description",
-  healthiest: "Healthiest now:",
+  healthiest: "Healthiest (♥ health):",
   zoom_in: "Zoom in to see which organisms are the healthiest.",
   none_alive: "No organism is alive.",
-  organism: (id: number, health: number) => `#${id} (${Math.ceil(health)})`,
+  organism: (id: number, health: number) => `#${id} ♥${Math.ceil(health)}`,
+  organism_name: (id: number, health: number) => `Organism ${id}, health ${Math.ceil(health)}`,
   take_part: "Take part",
+  only_watch: "Only watch",
   no_connection: "There is no connection.",
   is_viewer: "You are a viewer: read-only.",
-  takes_part: "Changes act for everyone.",
-  watches: "You only watch.",
+  takes_part: "You take part: changes act for everyone.",
+  watches: "to run, feed and change this world.",
   session: "The user and the role of this session",
 };
 
 /** The marks of the island. */
 export const legend_texts = {
-  vivid: "organism, arc: health",
-  classic: "organism, number: health",
+  vivid: (full: number) => `organism, ring: health (full: ${full})`,
+  classic: () => "organism, number: health",
   food: "food",
   poison: "poison",
+  trail: "trail",
 };

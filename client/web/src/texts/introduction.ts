@@ -9,8 +9,8 @@ export const introduction_steps: readonly IntroductionStep[] = [
   {
     title: "What you see",
     text:
-      "Evolution, live: an island with organisms that are bred generation by generation. The arc around each one is " +
-      "its health. Food is green, poison is red.",
+      "Evolution, live: an island with organisms that are bred generation by generation. The ring around each one " +
+      "is its health. Food is green, poison is red.",
   },
   {
     title: "What they want",
@@ -19,7 +19,7 @@ export const introduction_steps: readonly IntroductionStep[] = [
   },
   {
     title: "What you can do",
-    text: "Compare generation 1 with the present. Click an organism. Turn on “Take part” to run, feed and change " +
+    text: "Compare generation 1 with the present. Click an organism. Press “Take part” to run, feed and change " +
       "this world.",
   },
 ];

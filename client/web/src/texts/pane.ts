@@ -16,6 +16,8 @@ export const pane_texts = {
     `Island ${island} of world ${world}${alive}. Arrow keys move the view, 0 shows the whole island.`,
   alive: (generation: number, alive: number) =>
     `, generation ${with_separators(generation)}, ${organisms(alive)} alive`,
+  start: "▶ Start",
+  start_help: "Takes part, and runs this world.",
   waiting: "Waiting for the first snapshot …",
   world: "World",
   world_named: (name: string, is_replay: boolean) => `World ${name}${is_replay ? ", replay" : ""}`,

@@ -39,7 +39,6 @@ export const parameters_texts = {
 };
 
 export const when_texts = {
-  label: "Apply",
   choice: "When the edits are applied",
   now: "now",
   in_generation: "in generation",

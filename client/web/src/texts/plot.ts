@@ -14,7 +14,7 @@ export const plot_texts = {
   band: (low: string, high: string) => `${low} to ${high}`,
   smoothed: (raw: string, mean_name: string, mean: string) => `${raw} (${mean_name}: ${mean})`,
   mean: "mean",
-  mean_of: (window: number) => `mean of ${window}`,
+  mean_of: (window: number) => `mean of the last ${window} generations`,
   mark_of: (mark: string, history: string) => `${mark} (${history})`,
   more: (count: number) => `and ${with_separators(count)} more`,
 
@@ -24,5 +24,8 @@ export const plot_texts = {
   curve_title: (generation: number) => `Fitness, generation ${shown_number(generation)}`,
   no_curve: "Fitness: the curve begins when the first generation ends",
   changed: (generation: number, values: string, actor: string) => `generation ${generation}: ${values} by ${actor}`,
-  click_shows: "A click shows this generation in a replay.",
+  click_shows: (first: number) =>
+    `A click shows this generation in a replay${first > 1 ? `, from generation ${with_separators(first)} on` : ""}.`,
+  begins: (generation: number) =>
+    `The run of this world can be shown from generation ${with_separators(generation)} on.`,
 };

@@ -42,7 +42,7 @@ export const figure_texts = {
   food: {title: "Food and poison eaten", y: "items per generation", food: "food eaten", poison: "poison eaten"},
   values: {title: (gene: string) => `Values of ${gene}`, y: "organisms", organisms: "organisms", none: "…"},
   all_died: (generation: number) => `generation ${generation}: all organisms died before its end`,
-  extinction: "extinction",
+  extinction: "all died",
 };
 
 export const plots_panel_texts = {

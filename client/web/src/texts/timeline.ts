@@ -18,7 +18,7 @@ export const timeline_texts = {
   is_end: "This is the end of the replay.",
   extinction: (generation: number) => `generation ${with_separators(generation)}: all organisms died before its end`,
   forked: (world: string) => `The world ${world} was forked from here.`,
-  mark_labels: {extinction: "extinct", placed: "placed", removed: "removed", migration: "migration", fork: "fork"},
+  mark_labels: {extinction: "all died", placed: "placed", removed: "removed", migration: "migration", fork: "fork"},
   several: (label: string, further: number) => `${label} +${further}`,
   zoomed: (first: number, last: number) =>
     `the line shows the generations ${with_separators(first)} to ${with_separators(last)}`,

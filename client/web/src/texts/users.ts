@@ -19,8 +19,8 @@ export function actor_text(by: Actor|undefined): string {
   }
 }
 
-/** The user and the role of a session: "vera (viewer)". */
+/** The user and the role of a session: "vera (viewer)"; only the role if it has no token. */
 export function session_text(welcome: Welcome|null): string {
-  const user = welcome?.user || "no token", role = welcome?.role ?? "ROLE_VIEWER";
-  return `${user} (${role.replace("ROLE_", "").toLowerCase()})`;
+  const role = (welcome?.role ?? "ROLE_VIEWER").replace("ROLE_", "").toLowerCase();
+  return welcome?.user ? `${welcome.user} (${role})` : role;
 }

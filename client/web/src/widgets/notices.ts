@@ -15,8 +15,9 @@ export interface Action {
 /** Shows a message.
  *
  *  holds   whether what the message states is still true; absent: the message reports something that has happened
- *  action  a button of the message */
-export type Notify = (text: string, holds?: () => boolean, action?: Action) => void;
+ *  action  a button of the message
+ *  stays   it is a refusal, which stays until the next action instead of some seconds */
+export type Notify = (text: string, holds?: () => boolean, action?: Action, stays?: boolean) => void;
 
 export class Notices {
   readonly element = h("div", {class: "notices", role: "status", "aria-live": "polite"});
@@ -32,8 +33,14 @@ export class Notices {
     }
   }
 
+  /** Removes the refusal of the last action. */
+  forget_refusal(): void {
+    this.element.querySelectorAll("[data-stays]").forEach((notice) => notice.remove());
+  }
+
   /** Shows a message; see Notify. The same message is not shown twice at a time. */
-  show(text: string, holds?: () => boolean, action?: Action): void {
+  show(text: string, holds?: () => boolean, action?: Action, stays = false): void {
+    this.forget_refusal();
     for (const notice of [...this.element.children]) {
       if (notice.firstChild?.textContent === text) {
         notice.remove();
@@ -62,7 +69,11 @@ export class Notices {
     while (this.element.children.length > notices_max) {
       this.element.firstElementChild!.remove();
     }
-    this.#expire(notice);
+    if (stays) {
+      notice.dataset.stays = "";
+    } else {
+      this.#expire(notice);
+    }
   }
 
   /** Removes the message after a time, but not while the pointer or the focus is on it. */

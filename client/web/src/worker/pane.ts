@@ -8,7 +8,6 @@ import type {Connection} from "./connection";
 import {Feed} from "./feed";
 
 const report_ms = 50, drawing_report_ms = 200, tiles_report_ms = 300; // least time between two messages
-const healthiest_count = 5;
 
 /** The messages of the page about one pane. */
 export type ForPane =
@@ -76,6 +75,10 @@ export class WorkerPane {
     if (this.#undrawn.length === 0 && !this.needs_frame(now_ms)) {
       return false;
     }
+    const newest = this.newest();
+    if (newest && this.#is_report_due(now_ms)) {
+      this.#renderer?.view.read(newest.info, now_ms); // so that this frame has the labels of the report that follows
+    }
     this.#renderer?.draw(now_ms);
     for (const snapshot of this.#undrawn.splice(0)) {
       if (this.feed.subscription) {
@@ -102,20 +105,24 @@ export class WorkerPane {
     if (!this.#is_fresh || !newest || this.#undrawn.length > 0) {
       return this.#are_tiles_fresh;
     }
-    if (now_ms - this.#reported_ms.snapshot < report_ms) {
+    if (!this.#is_report_due(now_ms)) {
       return true;
     }
     this.#is_fresh = false;
     this.#reported_ms.snapshot = now_ms;
-    const island = this.#renderer?.view.island, selected = this.#renderer?.view.settings.selected ?? null;
+    const view = this.#renderer?.view, selected = view?.settings.selected ?? null;
     this.#post({
       kind: "snapshot",
       pane: this.#number,
       info: newest.info,
-      healthiest: island?.healthiest(healthiest_count) ?? [],
-      selected: island?.organism(selected) ?? null
+      reading: view?.read(newest.info, now_ms) ?? {info: newest.info, healthiest: []},
+      selected: view?.island.organism(selected) ?? null
     });
     return this.#are_tiles_fresh;
+  }
+
+  #is_report_due(now_ms: number): boolean {
+    return this.#is_fresh && now_ms - this.#reported_ms.snapshot >= report_ms;
   }
 
   /** The newest snapshot of the chosen island. */
@@ -196,6 +203,7 @@ export class WorkerPane {
     for (const snapshot of this.#newest.values()) {
       renderer.add(snapshot, performance.now());
     }
+    this.#is_fresh = this.#newest.size > 0; // the report without a canvas named no organisms
   }
 
   #watch(world: string, island: number, rate_hz: number): void {

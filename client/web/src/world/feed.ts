@@ -1,5 +1,5 @@
 // SnapshotFeed: the island that one pane shows, its newest snapshot, and how it is drawn.
-import type {Drawing, FromWorker, Look} from "../core/messages";
+import type {Drawing, FromWorker, Look, Reading} from "../core/messages";
 import type {GeneGroup} from "../core/protocol";
 import type {SnapshotInfo} from "../core/snapshot";
 import {default_look} from "../render/look";
@@ -18,7 +18,7 @@ export class SnapshotFeed {
   world = "";
   island = 0;
   snapshot: SnapshotInfo|null = null; // the newest drawn
-  healthiest: {id: number; health: number}[] = [];
+  reading: Reading|null = null;
   drawing: Drawing|null = null; // what the worker drew last
   look: Look = stored_look();
   problem = ""; // why nothing is drawn: the server refused the subscription or the replay
@@ -28,6 +28,10 @@ export class SnapshotFeed {
 
   constructor(readonly server: Server, readonly pane: number, changes: Changes) {
     this.#changes = changes;
+  }
+
+  get healthiest(): Reading["healthiest"] {
+    return this.reading?.healthiest ?? [];
   }
 
   get info(): KnownWorld|null {
@@ -58,8 +62,7 @@ export class SnapshotFeed {
   forget(world: string, island: number): void {
     this.world = world;
     this.island = island;
-    this.snapshot = null;
-    this.healthiest = [];
+    this.snapshot = this.reading = null;
     this.problem = "";
   }
 
@@ -99,7 +102,7 @@ export class SnapshotFeed {
 
   take(message: SnapshotMessage): void {
     this.snapshot = message.info;
-    this.healthiest = message.healthiest;
+    this.reading = message.reading;
     this.problem = "";
   }
 

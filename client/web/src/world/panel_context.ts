@@ -25,8 +25,9 @@ export interface PanelContext {
    *  function; null if it cannot, and a message says why. */
   place_by_clicks(model: PlacedModel): (() => boolean)|null;
   /** Shows a short message at the bottom, read by screen readers. It disappears after some seconds, and when `holds`
-   *  returns false: what it states is not true any more. action: a button of the message. */
-  notify(text: string, holds?: () => boolean, action?: {label: string; act: () => void}): void;
+   *  returns false: what it states is not true any more. action: a button of the message. stays: it is a refusal,
+   *  which stays until the next action. */
+  notify(text: string, holds?: () => boolean, action?: {label: string; act: () => void}, stays?: boolean): void;
   /** Runs a request, and shows the sentence of a refusal. Returns whether it succeeded. */
   attempt(what: () => Promise<unknown>): Promise<boolean>;
 }

@@ -1,4 +1,5 @@
 // Past: shows earlier moments of a live world in a replay, which the server computes for this page.
+import type {WorldInfo} from "../core/protocol";
 import type {SnapshotInfo} from "../core/snapshot";
 import {access_texts} from "../texts/access";
 import {common_texts} from "../texts/common";
@@ -38,6 +39,12 @@ export class Past {
     this.#feed = feed;
     this.#history = history;
     this.#changes = changes;
+  }
+
+  /** Sets the first moment of the run, which is a fork. */
+  begin({run_id = "", generation = 1, tick = 0}: WorldInfo): void {
+    this.#begin = {run_id, generation, tick};
+    this.#changes.notify();
   }
 
   /** Why the past of the world cannot be shown, as a sentence; empty if it can. */
