@@ -168,13 +168,6 @@ test("ordering removes crossings and never adds any", () => {
     tree.rows[3].map((spot) => spot.ancestor.parents[0].organism));
 });
 
-test("zooming keeps the point under the pointer", () => {
-  assert.deepEqual(family.zoomed({ begin: 0, end: 100 }, 100, 25, 2), { begin: 12.5, end: 62.5 });
-  assert.deepEqual(family.zoomed({ begin: 0, end: 100 }, 100, 50, 1e9), { begin: 46, end: 54 });
-  assert.deepEqual(family.zoomed({ begin: 10, end: 60 }, 100, 20, 0.1), { begin: 0, end: 100 });
-  assert.deepEqual(family.revealed({ begin: 0, end: 10 }, 100, 99), { begin: 90, end: 100 });
-});
-
 test("the colours name lineages and scales", () => {
   const tree = whole(), by_lineage = family.colouring_of(tree, { kind: "lineage" }, new family.GeneTable());
   assert.deepEqual(by_lineage.legend.lineages.map(({ founder, count }) => [founder.organism, count]), [[7, 4]]);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv", "plots/motion");
+const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv", "plots/motion", "widgets/visible_range");
 const shown = { min: 0, max: 100 };
 
 test("ticks are round and inside the range", () => {
@@ -38,6 +38,8 @@ test("zooming keeps the point under the pointer", () => {
 test("moving stops at the ends of the axis", () => {
   assert.deepEqual(plots.moved({ min: 10, max: 30 }, -50, shown), { min: 0, max: 20 });
   assert.deepEqual(plots.moved({ min: 10, max: 30 }, 500, shown), { min: 80, max: 100 });
+  assert.deepEqual(plots.revealed({ min: 0, max: 10 }, 99, 0.5, shown), { min: 90, max: 100 });
+  assert.deepEqual(plots.revealed({ min: 0, max: 10 }, 9, 0.5, shown), { min: 0, max: 10 });
 });
 
 test("a short series is not grouped", () => {

@@ -20,6 +20,7 @@ export class WorldHistory {
   generations: EndedGeneration[] = [];
   changes: AppliedChange[] = []; // oldest first
   is_complete = false;
+  problem = ""; // why the last reading failed; empty if it has not
   #world = "";
   #run_id = ""; // of the run; empty: not known
   #number = 0; // counts the readings
@@ -110,8 +111,10 @@ export class WorldHistory {
         [...read.generations, ...this.generations.filter((one) => one.generation > last)]; // ended while it was read
       this.changes = read.changes;
       this.is_complete = true;
-    } catch {
+      this.problem = "";
+    } catch (error) {
       // The session ended, or the world was deleted: the next session or world reads its history.
+      this.problem = number === this.#number ? (error as Error).message : this.problem;
     }
     this.#on_change.notify();
   }
@@ -157,6 +160,7 @@ export class WorldHistory {
         ...this.generations.filter((one) => one.generation <= after), ...read.generations,
         ...this.generations.filter((one) => one.generation > last)
       ];
+      this.problem = "";
       void this.read_changes();
       this.#missed_wait_ms = Math.max(missed_wait_min_ms, missed_wait_factor * (performance.now() - begun));
     } catch {
