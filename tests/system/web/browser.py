@@ -126,10 +126,10 @@ class Browser:
     def columns(self):
         """The entities of the newest snapshot, as the worker has decoded it: {"organisms": {"id": […], …}, …}, in 1/16
         px."""
-        return self.result("evod.server.columns(0)")["value"]
+        return self.result("evod.columns(0)")["value"]
 
     def figures(self):
-        return self.result("evod.server.figures()")["value"]
+        return self.result("evod.figures()")["value"]
 
     def log(self):
         """The messages in the console since the last call, as (level, text)."""
@@ -191,7 +191,7 @@ class Browser:
         switch = self.element("input[role=switch]")
         if switch.is_selected() != part:
             self.click(switch)
-        self.wait("evod.server.taking_part === arguments[0]", "taking part", part)
+        self.wait("evod.server.access.taking_part === arguments[0]", "taking part", part)
 
     def set_camera(self, x_px, y_px, zoom):
         """Shows the island at this scale, which a user can only come near with the wheel."""

@@ -41,7 +41,7 @@ class Controls(Case):
     def test_the_page_opens_watching(self):
         browser = self.browser
         before = self.control.world()
-        self.assertFalse(browser.value("evod.server.taking_part"))
+        self.assertFalse(browser.value("evod.server.access.taking_part"))
         browser.panel("Parameters")
         browser.wait_for_text("You are watching. Turn on “Take part” to change worlds.", "[data-panel=parameters]")
         self.assertFalse(self.field("mutation_chance").is_enabled())

@@ -91,8 +91,8 @@ export class App implements KeyTarget {
         this.#banners.element, this.panes.element, this.introduction.element, this.#show_column, this.column.element,
         this.#notices.element);
     set_attribute(this.element, "data-column", of_browser.get("column") === "collapsed" ? "collapsed" : "shown");
-    server.on_change(() => this.refresh());
-    server.on_event((event) => this.#announce(event));
+    server.changes.listen(() => this.refresh());
+    server.events.listen((event) => this.#announce(event));
     listen_to_keys(this);
     this.refresh();
     this.follow_link(location.hash);
@@ -105,17 +105,17 @@ export class App implements KeyTarget {
 
   /** Shows the present state. */
   refresh(): void {
-    const server = this.server, names = server.world_names, {areas} = this;
+    const server = this.server, names = server.worlds.names, {areas} = this;
     this.#notices.refresh();
     const first = names.includes(first_world) ? first_world : names[0];
-    if (server.worlds_known && !areas[0]!.world.name && first !== undefined) {
+    if (server.worlds.are_known && !areas[0]!.world.name && first !== undefined) {
       areas[0]!.world.show(first);
     }
     const ended = areas.length > 1 && areas.find((area) => area.world.name === ""); // its world was deleted
     if (ended) {
       this.panes.close(ended);
     }
-    const is_empty = server.worlds_known && names.length === 0;
+    const is_empty = server.worlds.are_known && names.length === 0;
     areas.forEach((area) => (area.element.hidden = is_empty));
     if (is_empty && !this.#empty.isConnected) {
       this.panes.element.append(this.#empty);
@@ -189,7 +189,7 @@ export class App implements KeyTarget {
 
   fork = async(name?: string): Promise<void> => {
     const server = this.server, world = this.world(), {island} = world;
-    const fork = name ?? unused_name(world.name, server.world_names);
+    const fork = name ?? unused_name(world.name, server.worlds.names);
     const act = (): Promise<unknown> => server.request("fork_world", {world: world.shown, name: fork});
     if (name !== undefined) {
       await act();

@@ -41,7 +41,7 @@ export class Summary {
     this.#tools = tools;
     this.#run_bar = new RunBar(context);
     this.#part =
-      h("input", {type: "checkbox", role: "switch", onchange: () => server.set_taking_part(this.#part.checked)});
+      h("input", {type: "checkbox", role: "switch", onchange: () => server.access.set_taking_part(this.#part.checked)});
     this.details = h("div", {class: "summary-details", id: "summary-details"}, this.#experiment, this.#legend.element);
     this.element =
       h("div", {class: "summary"},
@@ -55,16 +55,16 @@ export class Summary {
 
   refresh(): void {
     this.#refresh_choices();
-    const world = this.#context.world(), server = this.#server, {state, taking_part} = server;
-    const is_damaged = server.damage_of(world.name) !== "";
+    const world = this.#context.world(), server = this.#server, {state, access: {taking_part}} = server;
+    const is_damaged = server.worlds.damage_of(world.name) !== "";
     const state_text = is_damaged ? texts.is_damaged : world.name ? texts.loading : texts.none_open;
     set_text(this.#experiment, world.parameters.experiment || state_text);
     this.#legend.refresh(world);
     this.#run_bar.refresh();
     this.#part.checked = taking_part;
-    this.#part.disabled = !server.may_take_part;
+    this.#part.disabled = !server.access.may_take_part;
     const part_text = state.phase !== "open" ? texts.no_connection :
-      !server.may_take_part                  ? texts.is_viewer :
+      !server.access.may_take_part                  ? texts.is_viewer :
       taking_part                            ? texts.takes_part :
                                                texts.watches;
     set_text(this.#part_text, part_text);
@@ -74,10 +74,10 @@ export class Summary {
 
   #refresh_choices(): void {
     const world = this.#context.world(), server = this.#server;
-    const listed = server.worlds.filter((one) => !one.replay || one.name === world.name);
+    const listed = server.worlds.all.filter((one) => !one.replay || one.name === world.name);
     const names = [
       ...listed.map(({name}) => ({value: name, text: name})),
-      ...server.damaged.map(({name}) => ({value: name, text: texts.damaged(name)}))
+      ...server.worlds.damaged.map(({name}) => ({value: name, text: texts.damaged(name)}))
     ];
     set_options(this.#world, world.name ? names : [{value: "", text: texts.no_world}, ...names], world.name);
     const islands = world.info?.island_count ?? world.snapshot?.island_count ?? 1;

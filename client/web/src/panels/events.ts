@@ -59,7 +59,7 @@ export class EventsPanel implements Panel {
     this.element =
       h("div", {class: "panel panel-events"}, h("div", {class: "row"}, this.#read), this.#title, this.#choices,
         this.#empty, this.#list);
-    context.server.on_event((event) => this.#take(event));
+    context.server.events.listen((event) => this.#take(event));
   }
 
   refresh(): void {

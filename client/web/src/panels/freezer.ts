@@ -72,7 +72,7 @@ export class FreezerPanel implements Panel {
         row(h("span", {}, texts.as), this.#name, open, field), this.#problem, this.#table, this.#usage,
         this.#entry.element, hint(texts.where(location.host)));
     accept_drops(this.element, (files) => void this.#open(files));
-    this.#freezer.on_change(() => void this.#list());
+    this.#freezer.changes.listen(() => void this.#list());
     void this.#list();
   }
 

@@ -87,7 +87,7 @@ export class FreezerEntry {
     }
     const {kept, population} = shown, world = this.#context.world(), chosen = this.#choice.chosen();
     set_allowed(
-      this.#create, this.#context.server.why_not("create_world"),
+      this.#create, this.#context.server.access.why_not("create_world"),
       is_organism(population) ? texts.create_copies_help : texts.create_help);
     this.#placing.refresh(kept.name, kept.gene_names);
     set_text(this.#wrong, typeof chosen === "string" ? `${chosen}.` : "");

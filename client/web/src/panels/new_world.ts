@@ -169,7 +169,7 @@ class NewWorldDialog {
 
   #suggest(base: string): void {
     if (!this.#name_edited) {
-      this.#name.value = unused_name(base, this.#context.server.world_names);
+      this.#name.value = unused_name(base, this.#context.server.worlds.names);
     }
   }
 

@@ -67,7 +67,8 @@ export class ParameterExchange {
       this.edits.update_all(this.#set);
       changed = true;
     }
-    const why_not = world.is_replay ? common_texts.replay_cannot_change : server.why_not("set_parameters", world.shown);
+    const why_not = world.is_replay ? common_texts.replay_cannot_change :
+                                      server.access.why_not("set_parameters", world.shown);
     changed ||= why_not !== this.why_not;
     this.why_not = why_not;
     return changed;
@@ -79,9 +80,7 @@ export class ParameterExchange {
     if (event.world !== this.world || event.run_id !== this.#run_id || !parameters_changed || !this.edits.known) {
       return false;
     }
-    if (!this.edits.update_changed(parameters_changed)) {
-      void this.#read();
-    }
+    this.edits.update_changed(parameters_changed); // the world reads the complete set, which does not name the client
     return true;
   }
 
@@ -143,9 +142,7 @@ export class ParameterExchange {
   /** Cancels a planned change. */
   async cancel({id}: PlannedChange): Promise<void> {
     const {world} = this;
-    if (await this.#context.attempt(() => this.#context.server.request("cancel_change", {world, id}))) {
-      await this.#read();
-    }
+    await this.#context.attempt(() => this.#context.server.request("cancel_change", {world, id}));
   }
 
   #forget(): void {
@@ -154,20 +151,6 @@ export class ParameterExchange {
     this.#transaction += 1;
     this.#apply_again = false;
     this.#view.forgotten();
-  }
-
-  /** Requests the complete set. */
-  async #read(): Promise<void> {
-    const {world} = this, transaction = this.#transaction;
-    try {
-      const set = await this.#context.server.request("get_parameters", {world});
-      if (world === this.world && transaction === this.#transaction) {
-        this.edits.update_all(set);
-        this.#view.answered();
-      }
-    } catch {
-      // The session ended: the next one reads the parameters.
-    }
   }
 
   async #check(when: When|string): Promise<void> {
@@ -215,7 +198,7 @@ export class ParameterExchange {
       this.#view.refused();
     }
     if (stale) {
-      void this.#read();
+      this.#context.world().parameters.read();
     }
     this.#view.answered();
     if (this.#apply_again) {

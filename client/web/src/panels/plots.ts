@@ -112,7 +112,7 @@ export class PlotsPanel implements Panel {
   // ---- data ----
 
   #run_id(): string {
-    return this.#context.server.world(this.#context.world().name)?.run_id ?? "";
+    return this.#context.server.worlds.find(this.#context.world().name)?.run_id ?? "";
   }
 
   #need_population(): void {

@@ -24,7 +24,7 @@ export class OtherHistory {
       this.changes = marks_of(this.#history.changes);
       on_change();
     });
-    const end_events = server.on_event((event) => this.#take(event));
+    const end_events = server.events.listen((event) => this.#take(event));
     this.#end = () => {
       end_changes();
       end_events();
@@ -38,7 +38,7 @@ export class OtherHistory {
   }
 
   get gene_names(): string[] {
-    return this.#server.world(this.world)?.gene_names ?? [];
+    return this.#server.worlds.find(this.world)?.gene_names ?? [];
   }
 
   close(): void {

@@ -37,21 +37,21 @@ export class WorldHistory {
 
   /** Whether the world has begun another run since its history was read. */
   get is_of_earlier_run(): boolean {
-    const run_id = this.#server.world(this.#world)?.run_id ?? "";
+    const run_id = this.#server.worlds.find(this.#world)?.run_id ?? "";
     return run_id !== "" && this.#run_id !== "" && run_id !== this.#run_id;
   }
 
   /** The number of generations whose statistics are kept: as many as the server keeps, but fewer in worlds of many
    *  genes or islands. */
   get #generations_kept(): number {
-    const world = this.#server.world(this.#world), genes = Math.max(1, world?.gene_names?.length ?? 1),
+    const world = this.#server.worlds.find(this.#world), genes = Math.max(1, world?.gene_names?.length ?? 1),
           islands = Math.max(1, world?.island_count ?? 1);
-    return Math.min(
-      this.#server.limits.history_generations_kept ?? Infinity, Math.ceil(gene_statistics_max / (genes * islands)));
+    const kept_by_server = this.#server.state.welcome?.limits?.history_generations_kept ?? Infinity;
+    return Math.min(kept_by_server, Math.ceil(gene_statistics_max / (genes * islands)));
   }
 
   get #generation(): number {
-    return this.#server.world(this.#world)?.generation ?? 1;
+    return this.#server.worlds.find(this.#world)?.generation ?? 1;
   }
 
   get #last(): number {
@@ -96,7 +96,7 @@ export class WorldHistory {
   async read(world: string, same_run: boolean): Promise<void> {
     const number = ++this.#number;
     this.#world = world;
-    this.#run_id = this.#server.world(world)?.run_id ?? "";
+    this.#run_id = this.#server.worlds.find(world)?.run_id ?? "";
     if (!same_run) {
       this.forget();
     }

@@ -120,19 +120,16 @@ export class ParameterEdits {
     this.revision = revision;
   }
 
-  /** Stores a ParametersChanged event. Returns false if an earlier change was missed; the caller then requests the
-   *  complete set. */
-  update_changed(changed: ParametersChanged): boolean {
+  /** Stores a ParametersChanged event unless the known set already contains this change. */
+  update_changed(changed: ParametersChanged): void {
     const revision = changed.revision ?? 0;
     if (revision <= this.revision) {
-      return true; // the known set already contains this change
+      return;
     }
     for (const state of changed.changed ?? []) {
       this.#take(state, actor_text(changed.by));
     }
-    const is_next = revision === this.revision + 1;
     this.revision = revision;
-    return is_next;
   }
 
   #take(reported: ParameterState, client?: string): void {

@@ -42,9 +42,9 @@ export class Past {
 
   /** Why the past of the world cannot be shown, as a sentence; empty if it can. */
   get problem(): string {
-    const server = this.#feed.server, live = server.world(this.#live.name());
+    const server = this.#feed.server, live = server.worlds.find(this.#live.name());
     return !live                  ? common_texts.no_world :
-      live.storage || live.replay ? server.why_not("open_replay") :
+      live.storage || live.replay ? server.access.why_not("open_replay") :
                                     access_texts.run_not_stored;
   }
 
