@@ -10,7 +10,7 @@ const limits = { control_frame_bytes_max: 1 << 20, requests_in_flight_max: 32 };
 /** A ClientCore and the other end of its connection. */
 class Session {
   constructor(options = {}) {
-    this.core = new core.ClientCore(descriptor, { client_name: "test", client_version: "1", token: "", server: "here:1", ...options });
+    this.core = new core.ClientCore(descriptor, { client_name: "test", token: "", server: "here:1", ...options });
   }
 
   /** Opens a connection and lets the server say Welcome. Returns the events. */
@@ -45,7 +45,7 @@ class Session {
   /** Receives a SnapshotFrame. Returns the events. */
   show(frame) {
     const bytes = core.encode_frame(schema.encode("evod.v1.SnapshotFrame", frame));
-    bytes[3] = core.stream_channel;
+    bytes[3] = 2; // the channel of snapshots
     return this.core.received(bytes);
   }
 
@@ -80,7 +80,7 @@ test("the Hello is the first message and contains the token", () => {
   session.core.requests.add({ list_worlds: {} });
   assert.equal(session.core.outgoing(), null); // nothing is sent before there is a connection
   session.core.opened();
-  assert.deepEqual(session.sent(), [{ hello: { protocol_version: 1, client_name: "test", client_version: "1", token: "secret" } }]);
+  assert.deepEqual(session.sent(), [{ hello: { protocol_version: 1, client_name: "test", token: "secret" } }]);
   const events = session.say({ welcome: { protocol_version: 1, limits } });
   assert.deepEqual(kinds_of(events), ["opened"]);
   assert.deepEqual(session.requests().map((request) => request.list_worlds), [{}]);

@@ -67,7 +67,7 @@ export class Freezer {
     const {kept, genes, end} = await this.#begin("readwrite");
     const entries = await result_of<Kept[]>(kept.getAll());
     const genes_bytes = population.islands.reduce((sum, island) => sum + island.byteLength, 0);
-    const problem = name_problem("name", name) || room_problem(entries, genes_bytes);
+    const problem = name_problem(name) || room_problem(entries, genes_bytes);
     if (problem) {
       throw new Error(problem);
     }
@@ -94,7 +94,7 @@ export class Freezer {
       result_of<Kept|undefined>(kept.get(from)), result_of<Float32Array[]>(genes.get(from)),
       result_of<IDBValidKey[]>(kept.getAllKeys())
     ]);
-    const problem = name_problem("name", to) || (about ? "" : freezer_texts.gone(from));
+    const problem = name_problem(to) || (about ? "" : freezer_texts.gone(from));
     if (problem) {
       throw new Error(problem);
     }

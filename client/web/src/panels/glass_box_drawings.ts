@@ -7,7 +7,6 @@ import {
   type GeneOrigin,
   type Inheritance,
   inheritance_of,
-  mutation_text,
   origin_text,
   other_genes_text
 } from "../breeding/inheritance";
@@ -17,7 +16,7 @@ import {point_at, rank_colour, ring_path, text_on, wheel_arcs} from "../breeding
 import {gene_label} from "../organism/texts";
 import type {Descendant} from "../core/protocol";
 import {css} from "../render/look";
-import {delta_text, gene_text} from "../texts/breeding";
+import {breeding_texts, delta_text, gene_text} from "../texts/breeding";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, svg} from "../widgets/dom";
 import {svg_label, svg_line, svg_rect} from "../widgets/svg";
@@ -327,15 +326,17 @@ export function draw_descendants(
   return image;
 }
 
+function swatch(kind: string, text: string): HTMLElement {
+  return h("span", {}, h("span", {class: `swatch ${kind}`}), text);
+}
+
 export function descendants_legend(): HTMLElement {
-  const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
   return h(
     "p", {class: "hint glass-legend"}, swatch("elite", glass_box_texts.elite),
     swatch("survivor", glass_box_texts.survivors), swatch("child", glass_box_texts.children));
 }
 
 function parents_legend(alone: boolean): HTMLElement {
-  const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
   return h(
     "p", {class: "hint glass-legend"}, !alone && swatch("first", glass_box_texts.first_parent),
     !alone && swatch("second", glass_box_texts.second_parent), !alone && swatch("blended", glass_box_texts.blended),
@@ -409,11 +410,12 @@ export function draw_family(descendant: Descendant, gene_names: readonly string[
               (change) =>
                 h("div", {
                   class: change.kind === "MUTATION_KIND_CLAMP" ? "gene-change clamped" : "gene-change",
-                  title: glass_box_texts.mutation(delta_text(change.after - change.before), mutation_text(change.kind)),
+                  title: glass_box_texts.mutation(
+                    delta_text(change.after - change.before), breeding_texts.mutation[change.kind]),
                 },
                   h("span", {}, gene_text(change.before)),
                   h("span", {}, glass_box_texts.changed_to(gene_text(change.after))),
-                  h("span", {}, mutation_text(change.kind))))))));
+                  h("span", {}, breeding_texts.mutation[change.kind])))))));
   }
   const final: number[] = descendant.genes ?? inheritance.genes;
   rows.push(row(

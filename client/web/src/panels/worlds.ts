@@ -134,7 +134,7 @@ export class WorldsPanel implements Panel {
   }
 
   async #do_fork(): Promise<void> {
-    const name = this.#fork_name.value.trim(), problem = name_problem("name", name);
+    const name = this.#fork_name.value.trim(), problem = name_problem(name);
     set_text(this.#fork_error, problem);
     if (problem) {
       return;

@@ -96,11 +96,9 @@ export class Past {
     return first === null || last === null ? null : {first, last};
   }
 
-  /** Shows a moment of the past; resolves when it is shown.
-   *
-   *  tick  since the generation began; absent: its first moment */
-  show(generation: number, tick?: number): Promise<void> {
-    return this.show_moment({generation, ...(tick === undefined ? {} : {tick})});
+  /** Shows the first moment of a generation; resolves when it is shown. */
+  show(generation: number): Promise<void> {
+    return this.show_moment({generation});
   }
 
   /** Shows the first moment of the generation that is `by` after the shown one, or after that of a running seek. */

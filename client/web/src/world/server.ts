@@ -8,14 +8,16 @@ import {Changes, Listeners} from "./changes";
 import {Worlds} from "./worlds";
 
 import type {ConnectionState, FromWorker, RequestKind, ToWorker} from "../core/messages";
+import type * as protocol from "../core/protocol";
 import type {
   Answers, Event, ParameterDescription, RequestKinds, Response, Status, Storage} from "../core/protocol";
 
-/** A refusal of the server. `violations` name the wrong fields. */
+/** A wrong field of a request. */
+export type Violation = Required<protocol.Violation>;
+
+/** A refusal of the server. */
 export class Refusal extends Error {
-  constructor(message: string, readonly code: string, readonly reason: string, readonly violations: {
-    field: string; allowed: string; got: string
-  }[]) {
+  constructor(message: string, readonly code: string, readonly reason: string, readonly violations: Violation[]) {
     super(message);
   }
 }
