@@ -1,7 +1,7 @@
 // Drawings of the glass box: the wheel, a tournament, fitness by rank, the picks in order, copies by rank, the next
 // generation in a row, and one descendant with its parents. Each function returns a new element.
 import {contender_text} from "../breeding/caption";
-import {type Comparison, pick_columns, rank_columns} from "../breeding/comparison";
+import {type Comparison, divided, pick_columns, rank_columns} from "../breeding/comparison";
 import {
   gene_blocks,
   type GeneOrigin,
@@ -181,10 +181,9 @@ function draw_bars(
   image.append(
     svg_label("drawing-title", [0, 10], bars.title),
     svg_label("drawing-quiet", [width, 10], range, {"text-anchor": "end"}));
-  const columns = Math.min(count, Math.floor(width / 2)), each = width / columns, gap = each > 5 ? 1 : 0;
-  for (let i = 0; i < columns; ++i) {
-    const first = Math.floor(i * count / columns), end = Math.floor((i + 1) * count / columns);
-    const ranks = Array.from({length: end - first}, (_, n) => first + n);
+  const columns = divided(count, Math.floor(width / 2)), each = width / columns.length, gap = each > 5 ? 1 : 0;
+  columns.forEach(({first, last}, i) => {
+    const ranks = Array.from({length: last - first + 1}, (_, n) => first + n);
     const mean = ranks.reduce((sum, rank) => sum + values[rank]!, 0) / ranks.length;
     const y = Math.min(y_of(mean), y_of(0)), middle = i * each + (each - gap) / 2;
     const organism = comparison.organisms[first]!;
@@ -193,14 +192,14 @@ function draw_bars(
       svg(
         "title", {},
         ranks.length === 1 ? contender_text(organism, record.contenders[organism]!, complete) :
-                             glass_box_texts.ranks(first, end - 1))));
+                             glass_box_texts.ranks(first, last))));
     if (ranks.some((rank) => comparison.organisms[rank] === bars.current)) {
       image.append(svg(
         "polygon", {class: "pointer", points: `${middle - 6},${y - 12} ${middle + 6},${y - 12} ${middle},${y - 2}`}));
     } else if (ranks.some((rank) => (bars.copies[rank] ?? 0) > 0)) {
       image.append(svg("circle", {class: "picked-dot", cx: middle, cy: y - 5, r: 2.5}));
     }
-  }
+  });
   image.append(svg_line("axis", [0, y_of(0), width, y_of(0)]));
   return image;
 }

@@ -123,18 +123,15 @@ export class Server {
       case "state":
         this.#take_state(message.state);
         break;
-      case "response": {
-        const waiting = this.#waiting.get(message.id);
-        this.#waiting.delete(message.id);
-        if (waiting) {
-          this.#take_response(waiting, message.response);
-        }
-        break;
-      }
+      case "response":
       case "failed": {
         const waiting = this.#waiting.get(message.id);
         this.#waiting.delete(message.id);
-        waiting?.reject(new Refusal(message.message, "", "", []));
+        if (message.kind === "failed") {
+          waiting?.reject(new Refusal(message.message, "", "", []));
+        } else if (waiting) {
+          this.#take_response(waiting, message.response);
+        }
         break;
       }
       case "events":
