@@ -10,7 +10,8 @@ export const MESSAGE = 11, BYTES = 12, UINT32 = 13, ENUM = 14;
 export const VARINT = 0, EIGHT_BYTES = 1, LENGTH = 2, GROUP = 3, END_GROUP = 4, FOUR_BYTES = 5; // wire types
 
 export const wire_type_of = [
-  -1, EIGHT_BYTES, FOUR_BYTES, VARINT, VARINT, VARINT, -1, FOUR_BYTES, VARINT, LENGTH, -1, LENGTH, LENGTH, VARINT, VARINT
+  -1, EIGHT_BYTES, FOUR_BYTES, VARINT, VARINT, VARINT, -1, FOUR_BYTES, VARINT, LENGTH, -1, LENGTH, LENGTH, VARINT,
+  VARINT
 ];
 
 /** A message of any type, as it is read or written. */
