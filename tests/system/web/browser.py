@@ -1,7 +1,8 @@
 """A headless Chromium that shows the page of a server, through Debian's Selenium, and what the page knows, for tests.
 
 The page offers its objects as `evod` for tests (client/web/src/page/main.ts): evod.server is the connection, evod.app
-the page. Scripts here read them; what a user does is done by clicks, keys and touches.
+the page, evod.figures() and evod.columns() return what the worker measures and draws. Scripts here read them; what a
+user does is done by clicks, keys and touches.
 """
 import atexit
 import base64
