@@ -3,11 +3,12 @@
 // Flow control   A snapshot is acknowledged after the frame that contains it is drawn, and the server sends at most
 //                unacknowledged_max snapshots ahead. A hidden page draws nothing, so the server soon stops sending;
 //                after hidden_max_ms the worker ends its subscriptions to snapshots until the page is visible again.
-import {type CoreEvent, is_name_of_replay, type Subscription} from "./core/client_core";
+import type {CoreEvent, Subscription} from "./core/core_session";
 import {InvalidMessage} from "./core/errors";
 import {EventQueue} from "./core/event_queue";
 import {type Figures, type FromWorker, none_left, type ToWorker} from "./core/messages";
 import type {Request} from "./core/protocol";
+import {is_name_of_replay} from "./core/request_queue";
 import type {Snapshot} from "./core/snapshot";
 import {worker_texts} from "./texts/worker";
 import {Connection} from "./worker/connection";
@@ -39,7 +40,7 @@ const ids = new Map<number, number>(); // ids of the page by ids of the core
 function begin(url: string, token: string, descriptor: ArrayBuffer): void {
   const core = connection.begin(url, token, new Uint8Array(descriptor));
   scope.postMessage({kind: "rules", rules: core.schema.request_rules(), roles: core.schema.enum_names("evod.v1.Role")});
-  core.subscribe({subscribe_events: {}});
+  core.subscriptions.subscribe({subscribe_events: {}});
   for (const {feed} of panes.values()) {
     feed.forget();
     if (feed.watched && is_name_of_replay(feed.watched.world)) {
@@ -119,7 +120,7 @@ function take_snapshot(subscription: Subscription, snapshot: Snapshot): void {
   timings.snapshot_count += 1;
   const now_ms = performance.now();
   if (![...panes.values()].some((pane) => pane.take_snapshot(subscription, snapshot, now_ms))) {
-    connection.core!.acknowledge(subscription, snapshot);
+    connection.core!.subscriptions.acknowledge(subscription, snapshot);
   }
   loop();
 }
@@ -151,7 +152,8 @@ function draw(): boolean {
   const now_ms = performance.now(), {core} = connection;
   let again = false, drawn = false;
   for (const pane of panes.values()) {
-    drawn = pane.draw(now_ms, (subscription, snapshot) => core?.acknowledge(subscription, snapshot)) || drawn;
+    const acknowledge = (of: Subscription, snapshot: Snapshot): void => core?.subscriptions.acknowledge(of, snapshot);
+    drawn = pane.draw(now_ms, acknowledge) || drawn;
     again = pane.report(now_ms) || pane.needs_frame(now_ms) || again;
   }
   if (drawn) {
@@ -228,7 +230,7 @@ function request(id: number, request: Request, first: boolean): void {
     if (!connection.core) {
       throw new InvalidMessage(worker_texts.no_connection);
     }
-    ids.set(connection.core.request(request, first), id);
+    ids.set(connection.core.requests.add(request, first), id);
     connection.flush();
   } catch (error) {
     if (!(error instanceof InvalidMessage)) {
@@ -242,7 +244,7 @@ function request(id: number, request: Request, first: boolean): void {
 function figures(): Figures {
   return {
     ...timings.figures(performance.now()),
-    damaged_snapshots: connection.core?.damaged_snapshot_count ?? 0,
+    damaged_snapshots: connection.core?.subscriptions.damaged_snapshot_count ?? 0,
     dropped: [...panes.values()].reduce((sum, pane) => sum + (pane.newest()?.info.dropped_count ?? 0), 0),
   };
 }

@@ -1,7 +1,8 @@
 """A headless Chromium that shows the page of a server, through Debian's Selenium, and what the page knows, for tests.
 
 The page offers its objects as `evod` for tests (client/web/src/page/main.ts): evod.server is the connection, evod.app
-the page. Scripts here read them; what a user does is done by clicks, keys and touches.
+the page, evod.figures() and evod.columns() return what the worker measures and draws. Scripts here read them; what a
+user does is done by clicks, keys and touches.
 """
 import atexit
 import base64
@@ -126,10 +127,10 @@ class Browser:
     def columns(self):
         """The entities of the newest snapshot, as the worker has decoded it: {"organisms": {"id": […], …}, …}, in 1/16
         px."""
-        return self.result("evod.server.columns(0)")["value"]
+        return self.result("evod.columns(0)")["value"]
 
     def figures(self):
-        return self.result("evod.server.figures()")["value"]
+        return self.result("evod.figures()")["value"]
 
     def log(self):
         """The messages in the console since the last call, as (level, text)."""
@@ -188,9 +189,9 @@ class Browser:
         element.send_keys(text, Keys.ENTER)
 
     def take_part(self, part=True):
-        if self.value("evod.server.taking_part") != part:
+        if self.value("evod.server.access.taking_part") != part:
             self.click(self.element(".part .button"))
-        self.wait("evod.server.taking_part === arguments[0]", "taking part", part)
+        self.wait("evod.server.access.taking_part === arguments[0]", "taking part", part)
 
     def set_camera(self, x_px, y_px, zoom):
         """Shows the island at this scale, which a user can only come near with the wheel."""

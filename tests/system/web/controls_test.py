@@ -41,7 +41,7 @@ class Controls(Case):
     def test_the_page_opens_watching(self):
         browser = self.browser
         before = self.control.world()
-        self.assertFalse(browser.value("evod.server.taking_part"))
+        self.assertFalse(browser.value("evod.server.access.taking_part"))
         browser.panel("Parameters")
         browser.wait_for_text("You are watching. Press “Take part” to change worlds.", "[data-panel=parameters]")
         self.assertFalse(self.field("mutation_chance").is_enabled())
@@ -58,7 +58,7 @@ class Controls(Case):
     def test_a_refused_action_offers_to_take_part(self):
         self.browser.click("Run")
         self.browser.press("Take part", ".notices")
-        self.browser.wait("evod.server.taking_part", "taking part")
+        self.browser.wait("evod.server.access.taking_part", "taking part")
         self.browser.take_part(False)
 
     def test_a_waiting_world_can_be_started_on_its_island(self):

@@ -19,7 +19,7 @@ class Forks(Case):
         self.control.call(fork_world=c.ForkWorld(world="default", name="fork"))
         self.browser.open(self.page(self.served, "#world=fork"))
         self.browser.wait("evod.app.world().snapshot?.world === 'fork'", "the fork")
-        run_id = self.browser.value("evod.server.world('default').run_id")
+        run_id = self.browser.value("evod.server.worlds.find('default').run_id")
         for fields, code in (({}, "CODE_FAILED_PRECONDITION"), ({"generation": 2}, "CODE_FAILED_PRECONDITION")):
             refusal = self.browser.request("get_breeding", world="fork", **fields)
             self.assertEqual(refusal["code"], code)
@@ -84,7 +84,7 @@ class Forks(Case):
     def test_a_deleted_origin_is_said(self):
         browser = self.browser
         self.control.call(delete_world=c.DeleteWorld(world="default"))
-        browser.wait("evod.server.world('default') === null", "no origin")
+        browser.wait("evod.server.worlds.find('default') === null", "no origin")
         browser.panel("Glass box")
         browser.wait_for_text("Generation 3 bred before this fork began, in a run "
                               "that no world of this server has now.",

@@ -56,7 +56,7 @@ class Keyboard(Case):
     def test_the_run_control_works_by_keyboard(self):
         browser = self.browser
         browser.element(".part .button").send_keys(Keys.SPACE)
-        browser.wait("evod.server.taking_part && !document.querySelector('.run-bar .run').ariaDisabled",
+        browser.wait("evod.server.access.taking_part && !document.querySelector('.run-bar .run').ariaDisabled",
                      "an enabled button")
         browser.element(".run-bar .run").send_keys(Keys.ENTER)
         self.control.wait_world(lambda world: world.state == w.RUN_STATE_RUNNING, "default")

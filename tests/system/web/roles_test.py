@@ -25,7 +25,7 @@ class Roles(Case):
         self.assertNotIn(self.controller, browser.value("document.documentElement.outerHTML"))
         self.assertEqual(browser.value("document.cookie"), "")
         browser.reload()
-        self.assertEqual(browser.value("evod.server.role"), "ROLE_CONTROLLER")
+        self.assertEqual(browser.value("evod.server.access.role"), "ROLE_CONTROLLER")
         self.assertEqual(browser.value("evod.server.state.welcome.user"), "carl")
         for url in browser.requested():
             self.assertNotIn(self.controller, url)
@@ -97,7 +97,7 @@ class Roles(Case):
         browser.wait("document.querySelector('.start [role=status]').textContent.includes('token')", "the reason")
         browser.element("#token").send_keys(self.viewer, Keys.ENTER)
         browser.wait_for_snapshot()
-        self.assertEqual(browser.value("evod.server.role"), "ROLE_VIEWER")
+        self.assertEqual(browser.value("evod.server.access.role"), "ROLE_VIEWER")
 
     def test_without_a_token_the_page_asks_for_one(self):
         browser = self.browser

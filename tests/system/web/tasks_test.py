@@ -126,7 +126,7 @@ class Tasks(Case):
 
     def test_compare_two_worlds(self):
         self.control.call(create_world=c.CreateWorld(name="other", seed=2))
-        self.browser.wait("evod.server.world_names.length === 2", "two worlds")
+        self.browser.wait("evod.server.worlds.names.length === 2", "two worlds")
         self.key("b")
         self.act(self.browser.click, self.browser.wait("""[...document.querySelectorAll("dialog[open] .second-choice")]
             .find((e) => e.innerText.startsWith("other"))""", "the other world in the list"))
@@ -134,7 +134,7 @@ class Tasks(Case):
 
     def test_compare_the_curves_of_two_worlds(self):
         self.control.call(create_world=c.CreateWorld(name="other", seed=2))
-        self.browser.wait("evod.server.world_names.length === 2", "two worlds")
+        self.browser.wait("evod.server.worlds.names.length === 2", "two worlds")
         self.panel("Plots")
         self.choose("[data-panel=plots] select", "world other")
         self.browser.wait_for_text("other", "[data-panel=plots]")
@@ -156,7 +156,7 @@ class Tasks(Case):
 
     def test_fork_now(self):
         self.press("Fork")
-        self.browser.wait("evod.server.world_names.length === 2", "the fork")
+        self.browser.wait("evod.server.worlds.names.length === 2", "the fork")
         self.assertEqual(self.worlds(), {"default", "default-2"})
 
     def test_place_food(self):

@@ -57,13 +57,13 @@ class TwoWorlds(Case):
         browser.wait("evod.app.areas[1]?.world.snapshot?.world === 'other'", "the second world")
         self.assertEqual(browser.value("evod.app.world().name"), "default")
         self.assertEqual(self.shown()[0], before[0])
-        self.assertTrue(browser.value("evod.server.taking_part"))
+        self.assertTrue(browser.value("evod.server.access.taking_part"))
         self.key("x")
         self.assertEqual(browser.value("evod.app.world().name"), "other")
         self.key("b")  # closes the second world, although it has the focus
         browser.wait("evod.app.areas.length === 1", "one world")
         self.assertEqual(self.shown(), before)
-        self.assertTrue(browser.value("evod.server.taking_part"))
+        self.assertTrue(browser.value("evod.server.access.taking_part"))
 
     def test_a_world_alone_offers_its_past(self):
         browser = self.browser
@@ -127,7 +127,7 @@ class TwoWorlds(Case):
         browser.wait_for_text("This world is in generation 1", ".banners")
         browser.press("Take part, and run 30 generations at full speed", ".banners")
         browser.wait("evod.app.areas.length === 2 && " + BOTH_RUN, "both running")
-        self.assertTrue(browser.value("evod.server.taking_part"))
+        self.assertTrue(browser.value("evod.server.access.taking_part"))
         browser.wait("evod.app.areas[1].world.snapshot?.generation <= 3", "generation 1")
         browser.wait_for_text("Generation ", ".pane-caption")
         browser.wait_for_text("Now, after generation 3", ".pane-caption")

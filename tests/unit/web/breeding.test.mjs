@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const breeding = await bundle("breeding", "texts/breeding");
+const breeding = await bundle("breeding", "texts/breeding", "texts/breeding_theory");
 const key = { world: "a", run_id: "r", island: 0, generation: 4 };
 
 /** A record with two organisms, their parameters and the given lists. */
@@ -261,9 +261,9 @@ test("the account says why a mean changed", () => {
     breeding.accounts_of({ genes: [{ mean: 100, deviation: 2,
       account: { selection: 0.4, transmission: -0.1, change: 0.3 } }, { mean: 1, deviation: 1, account: {} }] },
       ["normal_speed", "impulse"]);
-  assert.equal(breeding.account_text(accounts[0]),
+  assert.equal(breeding.account_texts.change(accounts[0]),
     "The mean of normal speed rose by 0.3: selection +0.4, transmission −0.1, migration 0.");
-  assert.equal(breeding.account_text(accounts[1]),
+  assert.equal(breeding.account_texts.change(accounts[1]),
     "The mean of impulse did not change: selection 0, transmission 0, migration 0.");
   assert.equal(breeding.reason_text(accounts[0]), "Organisms with more of it had more descendants.");
   assert.deepEqual(breeding.most_changed(accounts, 1).map((account) => account.name), ["normal speed"]);

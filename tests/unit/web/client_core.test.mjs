@@ -10,7 +10,7 @@ const limits = { control_frame_bytes_max: 1 << 20, requests_in_flight_max: 32 };
 /** A ClientCore and the other end of its connection. */
 class Session {
   constructor(options = {}) {
-    this.core = new core.ClientCore(descriptor, { client_name: "test", client_version: "1", token: "", server: "here:1", ...options });
+    this.core = new core.ClientCore(descriptor, { client_name: "test", token: "", server: "here:1", ...options });
   }
 
   /** Opens a connection and lets the server say Welcome. Returns the events. */
@@ -45,13 +45,13 @@ class Session {
   /** Receives a SnapshotFrame. Returns the events. */
   show(frame) {
     const bytes = core.encode_frame(schema.encode("evod.v1.SnapshotFrame", frame));
-    bytes[3] = core.stream_channel;
+    bytes[3] = 2; // the channel of snapshots
     return this.core.received(bytes);
   }
 
   /** Subscribes and lets the server accept. Returns the subscription. */
   subscribe(request, server_id = 7) {
-    const subscription = this.core.subscribe(request);
+    const subscription = this.core.subscriptions.subscribe(request);
     const events = this.accept(server_id);
     assert.deepEqual(events.filter((event) => event.kind === "subscribed"), [{ kind: "subscribed", subscription }]);
     return subscription;
@@ -77,17 +77,17 @@ const lost = { message: "the connection ended", code: "" };
 
 test("the Hello is the first message and contains the token", () => {
   const session = new Session({ token: "secret" });
-  session.core.request({ list_worlds: {} });
+  session.core.requests.add({ list_worlds: {} });
   assert.equal(session.core.outgoing(), null); // nothing is sent before there is a connection
   session.core.opened();
-  assert.deepEqual(session.sent(), [{ hello: { protocol_version: 1, client_name: "test", client_version: "1", token: "secret" } }]);
+  assert.deepEqual(session.sent(), [{ hello: { protocol_version: 1, client_name: "test", token: "secret" } }]);
   const events = session.say({ welcome: { protocol_version: 1, limits } });
   assert.deepEqual(kinds_of(events), ["opened"]);
   assert.deepEqual(session.requests().map((request) => request.list_worlds), [{}]);
 });
 
 test("a client_key has 16 random bytes", () => {
-  const keys = new Set(Array.from({ length: 50 }, () => new Session().core.client_key));
+  const keys = new Set(Array.from({ length: 50 }, () => new Session().core.requests.client_key));
   assert.equal(keys.size, 50);
   for (const key of keys) {
     assert.match(key, /^[0-9a-f]{32}$/);
@@ -142,9 +142,9 @@ test("another protocol version is final", () => {
 // ---- requests ----------------------------------------------------------------------------------------------------------
 
 test("responses are matched by request_id, whatever their order", () => {
-  const session = opened(), a = session.core.request({ pause: { world: "a" } }), b = session.core.request({ list_worlds: {} });
-  assert.deepEqual(session.requests(), [{ request_id: a, client_key: session.core.client_key, pause: { world: "a" } },
-                                        { request_id: b, client_key: session.core.client_key, list_worlds: {} }]);
+  const session = opened(), a = session.core.requests.add({ pause: { world: "a" } }), b = session.core.requests.add({ list_worlds: {} });
+  assert.deepEqual(session.requests(), [{ request_id: a, client_key: session.core.requests.client_key, pause: { world: "a" } },
+                                        { request_id: b, client_key: session.core.requests.client_key, list_worlds: {} }]);
   const refusal = { request_id: b, status: { code: "CODE_NOT_FOUND", message: "no", violations: [{ field: "x" }] } };
   const answer = { request_id: a, applied_tick: 0, world: { name: "a" } };
   assert.deepEqual(session.say({ response: refusal }, { response: answer }, { response: answer }),
@@ -152,12 +152,12 @@ test("responses are matched by request_id, whatever their order", () => {
 });
 
 test("unanswered requests are repeated with the same id and key", () => {
-  const session = opened(), a = session.core.request({ pause: { world: "a" } });
-  const b = session.core.request({ resume: { world: "a" } });
+  const session = opened(), a = session.core.requests.add({ pause: { world: "a" } });
+  const b = session.core.requests.add({ resume: { world: "a" } });
   const [first, second] = session.requests();
   session.say({ response: { request_id: a } });
   assert.deepEqual(session.core.lost(lost), []);
-  const c = session.core.request({ list_worlds: {} });
+  const c = session.core.requests.add({ list_worlds: {} });
   assert.equal(session.core.outgoing(), null);
   session.open();
   const again = session.requests();
@@ -169,36 +169,36 @@ test("unanswered requests are repeated with the same id and key", () => {
 
 test("requests about the session fail with it", () => {
   const session = opened(), failing = ["continue_export", "set_view", "unsubscribe", "request_keyframe"];
-  const ids = failing.map((kind) => session.core.request({ [kind]: {} }));
-  const stays = session.core.request({ pause: { world: "a" } });
+  const ids = failing.map((kind) => session.core.requests.add({ [kind]: {} }));
+  const stays = session.core.requests.add({ pause: { world: "a" } });
   assert.deepEqual(session.core.lost(lost), ids.map((id) => ({ kind: "failed", id, ...lost })));
   session.open();
   assert.deepEqual(session.requests().map((request) => request.request_id), [stays]);
 });
 
 test("all requests fail when connecting again is pointless", () => {
-  const session = new Session(), id = session.core.request({ list_worlds: {} });
+  const session = new Session(), id = session.core.requests.add({ list_worlds: {} });
   session.core.opened();
   session.say({ goodbye: { status: { code: "CODE_UNAUTHENTICATED", message: "no" } } });
   assert.deepEqual(session.core.lost(session.core.failed), [{ kind: "failed", id, ...session.core.failed }]);
-  assert.throws(() => session.core.request({ list_worlds: {} }), { name: "InvalidMessage", message: /refused this client: no$/ });
-  assert.throws(() => session.core.subscribe(snapshots()), core.InvalidMessage);
+  assert.throws(() => session.core.requests.add({ list_worlds: {} }), { name: "InvalidMessage", message: /refused this client: no$/ });
+  assert.throws(() => session.core.subscriptions.subscribe(snapshots()), core.InvalidMessage);
 });
 
 test("close() fails all requests", () => {
-  const session = opened(), id = session.core.request({ list_worlds: {} });
+  const session = opened(), id = session.core.requests.add({ list_worlds: {} });
   assert.deepEqual(session.core.close(), [{ kind: "failed", id, message: "the connection was closed here", code: "" }]);
 });
 
 test("at most half of the allowed requests are in flight", () => {
   const session = new Session();
   session.open({ limits: { ...limits, requests_in_flight_max: 5 } });
-  const ids = Array.from({ length: 4 }, () => session.core.request({ list_worlds: {} }));
+  const ids = Array.from({ length: 4 }, () => session.core.requests.add({ list_worlds: {} }));
   assert.deepEqual(session.requests().map((request) => request.request_id), ids.slice(0, 2));
-  const urgent = session.core.request({ pause: {} }, true);
+  const urgent = session.core.requests.add({ pause: {} }, true);
   session.say({ response: { request_id: ids[0] } });
   assert.deepEqual(session.requests().map((request) => request.request_id), [urgent]);
-  session.core.forget(ids[1]); // no longer awaited, but still in flight
+  session.core.requests.forget(ids[1]); // no longer awaited, but still in flight
   assert.deepEqual(session.requests(), []);
   assert.deepEqual(session.say({ response: { request_id: ids[1] } }), []);
   assert.deepEqual(session.requests().map((request) => request.request_id), [ids[2]]);
@@ -207,16 +207,16 @@ test("at most half of the allowed requests are in flight", () => {
 test("invalid and long requests are refused at once", () => {
   const session = new Session();
   session.open({ limits: { ...limits, control_frame_bytes_max: 100 } });
-  assert.throws(() => session.core.request({ pause: { worlds: "a" } }), { message: /request\.pause\.worlds/ });
-  assert.throws(() => session.core.request({ pause: { world: "a".repeat(100) } }), { message: /bytes long, allowed: at most 100$/ });
-  assert.throws(() => session.core.subscribe({ subscribe_snapshots: { rate: 1 } }), core.InvalidMessage);
+  assert.throws(() => session.core.requests.add({ pause: { worlds: "a" } }), { message: /request\.pause\.worlds/ });
+  assert.throws(() => session.core.requests.add({ pause: { world: "a".repeat(100) } }), { message: /bytes long, allowed: at most 100$/ });
+  assert.throws(() => session.core.subscriptions.subscribe({ subscribe_snapshots: { rate: 1 } }), core.InvalidMessage);
   assert.deepEqual(session.requests(), []);
 });
 
 test("a replay is closed if its caller no longer waits", () => {
-  const session = opened(), id = session.core.request({ open_replay: { world: "a" } });
+  const session = opened(), id = session.core.requests.add({ open_replay: { world: "a" } });
   session.requests();
-  session.core.forget(id);
+  session.core.requests.forget(id);
   assert.deepEqual(session.say({ response: { request_id: id, world: { name: "replay-1" } } }), []);
   assert.deepEqual(session.requests().map((request) => request.close_replay), [{ world: "replay-1" }]);
 });
@@ -224,8 +224,8 @@ test("a replay is closed if its caller no longer waits", () => {
 // ---- subscriptions -----------------------------------------------------------------------------------------------------
 
 test("subscriptions come before other requests and again in each session", () => {
-  const session = new Session(), subscription = session.core.subscribe(snapshots());
-  session.core.request({ list_worlds: {} });
+  const session = new Session(), subscription = session.core.subscriptions.subscribe(snapshots());
+  session.core.requests.add({ list_worlds: {} });
   session.open();
   const requests = session.requests();
   assert.deepEqual(requests.map((request) => Object.keys(request)[0]), ["subscribe_snapshots", "list_worlds"]);
@@ -255,7 +255,7 @@ test("after a reconnect an event says that events may be missing", () => {
 });
 
 test("a refused subscription is reported and tried again in the next session", () => {
-  const session = opened(), subscription = session.core.subscribe(snapshots()), [request] = session.requests();
+  const session = opened(), subscription = session.core.subscriptions.subscribe(snapshots()), [request] = session.requests();
   const status = { code: "CODE_NOT_FOUND", message: "no such world" };
   assert.deepEqual(session.say({ response: { request_id: request.request_id, status } }), [{ kind: "subscription_refused", subscription, status }]);
   assert.deepEqual(subscription.refused, status);
@@ -267,13 +267,13 @@ test("a refused subscription is reported and tried again in the next session", (
 
 test("an ended subscription is cancelled at the server, even if it is accepted late", () => {
   const session = opened(), accepted = session.subscribe(snapshots(), 7);
-  session.core.unsubscribe(accepted);
+  session.core.subscriptions.unsubscribe(accepted);
   const [request] = session.requests();
   assert.deepEqual(request.unsubscribe, { subscription_id: 7 });
   assert.deepEqual(session.say({ response: { request_id: request.request_id } }), []);
   assert.deepEqual(session.show({ ...deltas[0], subscription_id: 7 }), []);
-  const late = session.core.subscribe(snapshots()), [subscribing] = session.requests();
-  session.core.unsubscribe(late);
+  const late = session.core.subscriptions.subscribe(snapshots()), [subscribing] = session.requests();
+  session.core.subscriptions.unsubscribe(late);
   assert.deepEqual(session.say({ response: { request_id: subscribing.request_id, subscription: { subscription_id: 8 } } }), []);
   assert.deepEqual(session.requests().map((one) => one.unsubscribe), [{ subscription_id: 8 }]);
   session.core.lost(lost);
@@ -283,14 +283,14 @@ test("an ended subscription is cancelled at the server, even if it is accepted l
 
 test("one change of a view is in flight, and the newest follows", () => {
   const view = (left_px) => ({ region: { left_px, top_px: 5, width_px: 10, height_px: 10 } });
-  const session = opened(), subscription = session.core.subscribe({ subscribe_snapshots: { ...snapshots().subscribe_snapshots, view: view(1) } });
-  session.core.set_view(subscription, view(2)); // before the subscription is accepted
-  session.core.set_view(subscription, view(3));
+  const session = opened(), subscription = session.core.subscriptions.subscribe({ subscribe_snapshots: { ...snapshots().subscribe_snapshots, view: view(1) } });
+  session.core.subscriptions.set_view(subscription, view(2)); // before the subscription is accepted
+  session.core.subscriptions.set_view(subscription, view(3));
   session.accept(7);
   const [first] = session.requests();
   assert.deepEqual(first.set_view, { subscription_id: 7, view: view(3) });
-  session.core.set_view(subscription, view(4));
-  session.core.set_view(subscription, view(5));
+  session.core.subscriptions.set_view(subscription, view(4));
+  session.core.subscriptions.set_view(subscription, view(5));
   assert.deepEqual(session.requests(), []);
   assert.deepEqual(session.say({ response: { request_id: first.request_id, subscription: { subscription_id: 7 } } }), []);
   const [second, ...more] = session.requests();
@@ -310,8 +310,8 @@ test("snapshots are acknowledged once, by the caller", () => {
   assert.deepEqual([event.kind, event.subscription], ["snapshot", subscription]);
   assert.equal(event.snapshot.organisms.id.length, 12);
   assert.equal(session.core.outgoing(), null);
-  session.core.acknowledge(subscription, event.snapshot);
-  session.core.acknowledge(subscription, event.snapshot);
+  session.core.subscriptions.acknowledge(subscription, event.snapshot);
+  session.core.subscriptions.acknowledge(subscription, event.snapshot);
   const sequence = deltas[0].sequence;
   assert.deepEqual(session.sent(), [{ acknowledge_snapshot: { subscription_id: 7, sequence } }]); // island 0 is omitted
 });
@@ -322,7 +322,7 @@ test("a snapshot of an earlier session is not acknowledged", () => {
   session.core.lost(lost);
   session.open();
   session.accept(7);
-  session.core.acknowledge(subscription, event.snapshot);
+  session.core.subscriptions.acknowledge(subscription, event.snapshot);
   assert.deepEqual(session.sent(), []);
 });
 
@@ -341,7 +341,7 @@ test("after damage a keyframe is requested and deltas are skipped", () => {
   assert.deepEqual(session.say({ response: { request_id: request.request.request_id } }), []);
   assert.deepEqual(kinds_of(session.show(of_session[keyframe])), ["snapshot"]);
   assert.deepEqual(kinds_of(session.show(of_session[keyframe + 1])), ["snapshot"]);
-  assert.equal(session.core.damaged_snapshot_count, 1);
+  assert.equal(session.core.subscriptions.damaged_snapshot_count, 1);
 });
 
 test("three damaged keyframes in a row close the session", () => {
@@ -372,7 +372,7 @@ test("messages cut at any byte give the same events", () => {
   const bytes = messages.flatMap((message) => [...core.encode_frame(schema.encode("evod.v1.ServerMessage", message))]);
   for (let cut = 0; cut <= bytes.length; ++cut) {
     const session = new Session();
-    session.core.request({ list_worlds: {} });
+    session.core.requests.add({ list_worlds: {} });
     session.core.opened();
     const events = [bytes.slice(0, cut), bytes.slice(cut)].flatMap((part) => session.core.received(new Uint8Array(part)));
     assert.deepEqual(kinds_of(events), ["opened", "response"], `cut at ${cut}`);

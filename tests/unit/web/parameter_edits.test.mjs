@@ -175,13 +175,13 @@ test("without an answer the change may have happened", () => {
   assert.match(edits.problem, /^No answer arrived/);
 });
 
-test("changes of others are named, and gaps are noticed", () => {
+test("changes of others are named", () => {
   const edits = made();
   const by = { kind: "ACTOR_KIND_CLIENT", user: "anna", client: "evoview" };
-  assert.equal(edits.update_changed({ revision: 6, by, changed: [state("food_count", { count: 25 }, { count: 60 })] }), true);
+  edits.update_changed({ revision: 6, by, changed: [state("food_count", { count: 25 }, { count: 60 })] });
   assert.deepEqual([edits.parameters[1].client_of_last_change, edits.parameters[1].pending !== null, edits.parameters[1].requested], ["anna: evoview", true, { count: 60 }]);
-  assert.equal(edits.update_changed({ revision: 6, by, changed: [] }), true, "known already");
-  assert.equal(edits.update_changed({ revision: 9, by, changed: [] }), false);
+  edits.update_changed({ revision: 6, by: {}, changed: [state("food_count", { count: 70 })] }); // known already
+  assert.deepEqual(edits.parameters[1].requested, { count: 60 });
 });
 
 test("an edit that another client makes too is done", () => {
@@ -199,57 +199,46 @@ test("an older set is ignored", () => {
 
 // ---- undo ----
 
+/** Returns the changes that were sent. */
 function changed_to(edits, value, revision) {
   edits.edit(0, { real: value });
   edits.apply("w");
+  const { sent } = edits;
   accepted(edits, revision, state("mutation_chance", { real: value }));
+  return sent;
 }
 
 test("undo and redo send the values again", () => {
-  const edits = made();
-  changed_to(edits, 0.3, 6);
-  assert.equal(edits.reverse("w", "redo"), null);
-  assert.deepEqual(edits.reverse("w", "undo").parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
+  const edits = made(), changes = changed_to(edits, 0.3, 6);
+  assert.deepEqual(edits.reverse("w", changes).parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
+  const { sent } = edits;
+  assert.equal(edits.reverse("w", changes), null); // a transaction is pending
   accepted(edits, 7, state("mutation_chance", { real: 0.15 }));
-  assert.equal(edits.reverse("w", "undo"), null);
-  assert.deepEqual(edits.reverse("w", "redo").parameters, [{ name: "mutation_chance", value: { real: 0.3 } }]);
-  accepted(edits, 8, state("mutation_chance", { real: 0.3 }));
-  assert.equal(edits.reverse("w", "redo"), null);
+  assert.deepEqual(edits.reverse("w", sent).parameters, [{ name: "mutation_chance", value: { real: 0.3 } }]);
 });
 
 test("undo leaves values of others", () => {
-  const edits = made();
-  changed_to(edits, 0.3, 6);
+  const edits = made(), changes = changed_to(edits, 0.3, 6);
   edits.update_changed({ revision: 7, by: {}, changed: [state("mutation_chance", { real: 0.9 })] });
-  assert.equal(edits.reverse("w", "undo"), null);
+  assert.equal(edits.reverse("w", changes), null);
   assert.equal(edits.busy, false);
 });
 
 test("a refused undo can be tried again", () => {
-  const edits = made();
-  changed_to(edits, 0.3, 6);
-  edits.reverse("w", "undo");
+  const edits = made(), changes = changed_to(edits, 0.3, 6);
+  edits.reverse("w", changes);
   edits.answered({ lost: true });
-  assert.deepEqual(edits.reverse("w", "undo").parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
-});
-
-test("a new change ends redo", () => {
-  const edits = made();
-  changed_to(edits, 0.3, 6);
-  edits.reverse("w", "undo");
-  accepted(edits, 7, state("mutation_chance", { real: 0.15 }));
-  changed_to(edits, 0.5, 8);
-  assert.equal(edits.reverse("w", "redo"), null);
+  assert.deepEqual(edits.reverse("w", changes).parameters, [{ name: "mutation_chance", value: { real: 0.15 } }]);
 });
 
 // ---- plans and dry runs ----
 
-test("a planned change is not an undo step", () => {
+test("a planned change ends its edits", () => {
   const edits = made();
   edits.edit(0, { real: 0.3 });
   assert.equal(edits.apply("w", { generation: 30 }).at_generation, 30);
   assert.equal(edits.answered({ set: null }), true);
-  assert.deepEqual([edits.edit_count, edits.reverse("w", "undo")], [0, null]);
+  assert.equal(edits.edit_count, 0);
   edits.update_all({ revision: 5, parameters: [], planned: [{ id: 1, generation: 30, parameters: [{ name: "mutation_chance", value: { real: 0.3 } }] }],
                      schedule: [{ name: "mutation_chance", generation: 50, value: { real: 0.01 } }] });
   assert.deepEqual(rules.planned_values(edits, "mutation_chance"), ["0.01 in generation 50", "0.3 in generation 30"]);

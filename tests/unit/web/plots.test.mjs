@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv", "plots/motion");
+const plots = await bundle("plots/plot_layout", "plots/history_table", "plots/figures", "plots/history_csv", "plots/change_marks", "world/change_text", "core/csv", "plots/motion", "plots/other_history",
+                           "widgets/visible_range", "world/changes");
 const shown = { min: 0, max: 100 };
 
 test("ticks are round and inside the range", () => {
@@ -38,6 +39,8 @@ test("zooming keeps the point under the pointer", () => {
 test("moving stops at the ends of the axis", () => {
   assert.deepEqual(plots.moved({ min: 10, max: 30 }, -50, shown), { min: 0, max: 20 });
   assert.deepEqual(plots.moved({ min: 10, max: 30 }, 500, shown), { min: 80, max: 100 });
+  assert.deepEqual(plots.revealed({ min: 0, max: 10 }, 99, 0.5, shown), { min: 90, max: 100 });
+  assert.deepEqual(plots.revealed({ min: 0, max: 10 }, 9, 0.5, shown), { min: 0, max: 10 });
 });
 
 test("a short series is not grouped", () => {
@@ -163,6 +166,31 @@ test("a missing island is NaN", () => {
   assert.deepEqual(table.column(0, "generation"), [1, 2]);
   assert.ok(Number.isNaN(table.column(0, "fitness_best")[1]));
   assert.deepEqual(table.column(null, "fitness_best"), [1, 2]);
+});
+
+test("the history of a compared world follows it", async () => {
+  const events = new plots.Listeners(), settled = () => new Promise(setImmediate);
+  const server = {
+    events, state: { welcome: null }, worlds: { find: () => ({ run_id: "r", generation: 3 }) },
+    request: async () => ({ generations: [statistics(1, 0), statistics(2, 0)], changes: [{ generation: 2, values: [] }] }),
+  };
+  let changes = 0;
+  const other = new plots.OtherHistory(server, "w", () => ++changes);
+  await settled();
+  assert.deepEqual([other.table.column(null, "generation"), other.changes.length, other.problem], [[1, 2], 1, ""]);
+  events.call({ world: "w", generation_finished: { statistics: [statistics(3, 0)] } });
+  events.call({ world: "v", generation_finished: { statistics: [statistics(9, 0)] } });
+  await settled();
+  assert.deepEqual(other.table.column(null, "generation"), [1, 2, 3]);
+  server.request = async () => { throw new Error("gone"); };
+  events.call({ world: "w", world_reset: {} });
+  await settled();
+  assert.deepEqual([other.table.column(null, "generation"), other.problem], [[], "gone"]);
+  const before = changes;
+  other.close();
+  events.call({ world: "w", generation_finished: { statistics: [statistics(1, 0)] } });
+  await settled();
+  assert.equal(changes, before);
 });
 
 // ---- figures ----

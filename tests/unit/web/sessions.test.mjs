@@ -10,7 +10,7 @@ const canonical = (type, message) => schema.decode(type, schema.encode(type, mes
 
 /** A client and the server's end of its session. */
 class Player {
-  core = new core.ClientCore(descriptor, { client_name: "test", client_version: "", token: "", server: "here:1" });
+  core = new core.ClientCore(descriptor, { client_name: "test", token: "", server: "here:1" });
   ids = new Map(); // request_id by name
   requests = new Map(); // id in the core by name
   outcomes = new Map(); // results by id in the core; by name if the call threw
@@ -70,7 +70,7 @@ class Player {
 
   request({ name, fields }) {
     try {
-      this.requests.set(name, this.core.request(fields));
+      this.requests.set(name, this.core.requests.add(fields));
     } catch (error) {
       assert.ok(error instanceof core.InvalidMessage);
       this.requests.set(name, name);
@@ -79,19 +79,19 @@ class Player {
   }
 
   forget(name) {
-    this.core.forget(this.requests.get(name));
+    this.core.requests.forget(this.requests.get(name));
   }
 
   subscribe({ name, fields }) {
-    this.subscriptions.set(name, this.core.subscribe(structuredClone(fields)));
+    this.subscriptions.set(name, this.core.subscriptions.subscribe(structuredClone(fields)));
   }
 
   unsubscribe(name) {
-    this.core.unsubscribe(this.subscriptions.get(name));
+    this.core.subscriptions.unsubscribe(this.subscriptions.get(name));
   }
 
   set_view({ name, view }) {
-    this.core.set_view(this.subscriptions.get(name), view);
+    this.core.subscriptions.set_view(this.subscriptions.get(name), view);
   }
 
   // ---- expectations
@@ -110,7 +110,7 @@ class Player {
     assert.equal(requests.length, expected.length, JSON.stringify(requests));
     expected.forEach(({ name, fields }, i) => {
       const { request_id, client_key, ...sent } = requests[i];
-      assert.equal(client_key, this.core.client_key);
+      assert.equal(client_key, this.core.requests.client_key);
       assert.ok(this.ids.has(name) || ![...this.ids.values()].includes(request_id), `${name} has a new id`);
       assert.equal(request_id, this.ids.get(name) ?? request_id, name);
       this.ids.set(name, request_id);

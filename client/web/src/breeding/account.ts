@@ -43,11 +43,6 @@ export function most_changed(accounts: readonly GeneChangeOfMean[], count: numbe
   return [...accounts].sort((a, b) => Math.abs(b.relative) - Math.abs(a.relative) || a.gene - b.gene).slice(0, count);
 }
 
-/** "The mean of normal speed rose by 0.3: selection +0.4, transmission −0.1, migration 0." */
-export function account_text(account: GeneChangeOfMean): string {
-  return account_texts.change(account);
-}
-
 /** The largest part as a sentence; empty if nothing changed. */
 export function reason_text({selection, transmission, migration, change}: GeneChangeOfMean): string {
   const largest = Math.max(Math.abs(selection), Math.abs(transmission), Math.abs(migration));

@@ -65,6 +65,12 @@ export function copies_after(record: BreedingRecord, count: number): number[] {
   return copies;
 }
 
+/** Divides `count` neighbours, numbered from 0, into at most `most` groups, whose sizes differ by at most one. */
+export function divided(count: number, most: number): {first: number; last: number}[] {
+  const groups = Math.min(count, most), begin = (group: number): number => Math.floor(group * count / groups);
+  return Array.from({length: groups}, (_, group) => ({first: begin(group), last: begin(group + 1) - 1}));
+}
+
 /** A group of neighbouring ranks that is drawn as one bar. */
 export interface RankColumn {
   first: number; // ranks
@@ -75,23 +81,14 @@ export interface RankColumn {
   deviation: number; // after all picks, in standard errors
 }
 
-/** Distributes the ranks over at most `columns` groups, whose sizes differ by at most one.
+/** Distributes the ranks over at most `columns` groups.
  *
  *  copies          observed copies by rank
  *  expected_share  factor for the expected copies: the fraction of all picks that `copies` includes, 0 to 1 */
 export function rank_columns(
   comparison: Comparison, copies: readonly number[], expected_share: number, columns: number): RankColumn[] {
-  const count = copies.length, made: RankColumn[] = [];
-  columns = Math.min(columns, count);
-  for (let i = 0; i < columns; ++i) {
-    const column = {
-      first: Math.floor(i * count / columns),
-      last: Math.floor((i + 1) * count / columns) - 1,
-      copies: 0,
-      expected: 0,
-      standard_error: 0,
-      deviation: 0
-    };
+  return divided(copies.length, columns).map((ranks) => {
+    const column = {...ranks, copies: 0, expected: 0, standard_error: 0, deviation: 0};
     let all_copies = 0, all_expected = 0, variance = 0;
     for (let rank = column.first; rank <= column.last; ++rank) {
       column.copies += copies[rank]!;
@@ -102,9 +99,8 @@ export function rank_columns(
     column.expected = all_expected * expected_share;
     column.standard_error = Math.sqrt(variance * expected_share);
     column.deviation = deviation(all_copies, all_expected, Math.sqrt(variance));
-    made.push(column);
-  }
-  return made;
+    return column;
+  });
 }
 
 /** A group of consecutive picks that is drawn as one cell. */
@@ -116,14 +112,10 @@ export interface PickColumn {
 
 /** Distributes all picks, in order, over at most `columns` groups. Ignores the ranks of picks after `index`. */
 export function pick_columns(record: BreedingRecord, index: number, columns: number): PickColumn[] {
-  const count = record.pick_count, made: PickColumn[] = [];
-  columns = Math.min(columns, count);
-  for (let i = 0; i < columns; ++i) {
-    const first = Math.floor(i * count / columns), last = Math.floor((i + 1) * count / columns) - 1;
+  return divided(record.pick_count, columns).map(({first, last}) => {
     const ranks = record.picks.slice(first, Math.min(last, index) + 1)
                     .map((pick) => record.contenders[pick.organism ?? 0])
                     .flatMap((contender) => (contender ? [rank_of(contender)] : []));
-    made.push({first, last, rank: ranks.length > 0 ? ranks.reduce((sum, rank) => sum + rank, 0) / ranks.length : null});
-  }
-  return made;
+    return {first, last, rank: ranks.length > 0 ? ranks.reduce((sum, rank) => sum + rank, 0) / ranks.length : null};
+  });
 }

@@ -1,6 +1,6 @@
 // Inheritance: how crossover, order mutation, mutations and bounds turned the genes of the parents into those of a
 // descendant. No DOM.
-import type {Descendant, MutationKind} from "../core/protocol";
+import type {Descendant, Mutation, MutationKind} from "../core/protocol";
 import {breeding_texts} from "../texts/breeding";
 
 export interface GeneOrigin {
@@ -8,14 +8,6 @@ export interface GeneOrigin {
   from_second: boolean; // false: from the first parent, or blended from both parents
   blended: boolean; // made of the genes of both parents, by blend or simulated_binary crossover
   gene: number; // index of the gene in that parent
-}
-
-/** A change of one gene, by a mutation or by clamping to its bounds. */
-export interface GeneChange {
-  kind: MutationKind;
-  gene: number;
-  before: number;
-  after: number;
 }
 
 export interface Inheritance {
@@ -26,7 +18,7 @@ export interface Inheritance {
   crossed: GeneOrigin[]; // by gene, after the crossover
   moves: {from: number; to: number}[]; // by the order mutation; genes that stayed are not included
   arranged: GeneOrigin[]; // by gene, after the order mutation
-  changes: GeneChange[]; // in the order in which they happened
+  changes: Required<Mutation>[]; // clamping to bounds, too, in the order in which they happened
   changed: boolean[]; // by gene
   genes: number[]; // of the descendant
 }
@@ -99,17 +91,12 @@ export function inheritance_of(descendant: Descendant): Inheritance|null {
   }
   result.genes = result.arranged.map((origin) => origin.value);
   for (const mutation of descendant.mutations ?? []) {
-    const gene = mutation.gene ?? 0;
+    const {kind = "MUTATION_KIND_UNSPECIFIED", gene = 0, before = 0, after = 0} = mutation;
     if (gene >= count) {
       return null;
     }
-    result.changes.push({
-      kind: mutation.kind ?? "MUTATION_KIND_UNSPECIFIED",
-      gene,
-      before: mutation.before ?? 0,
-      after: mutation.after ?? 0
-    });
-    result.genes[gene] = mutation.after ?? 0;
+    result.changes.push({kind, gene, before, after});
+    result.genes[gene] = after;
     result.changed[gene] = true;
   }
   return result;
@@ -120,10 +107,6 @@ export function brings_back(kind: MutationKind|undefined): boolean {
   return kind === "MUTATION_KIND_CLAMP" || kind === "MUTATION_KIND_REFLECT" || kind === "MUTATION_KIND_REDRAW";
 }
 
-export function mutation_text(kind: MutationKind): string {
-  return breeding_texts.mutation[kind];
-}
-
 /** Where a gene comes from: "hidden3<bias: 0.42 of parent 12, creep to 0.5" */
 export function origin_text(inheritance: Inheritance, gene: number, name: string, descendant: Descendant): string {
   const origin = inheritance.arranged[gene]!;
@@ -131,7 +114,7 @@ export function origin_text(inheritance: Inheritance, gene: number, name: string
   return breeding_texts.gene_origin(
     name, origin.value, origin.blended ? null : parent, origin.gene === gene ? null : origin.gene,
     inheritance.changes.filter((change) => change.gene === gene)
-      .map((change) => ({how: mutation_text(change.kind), after: change.after})));
+      .map((change) => ({how: breeding_texts.mutation[change.kind], after: change.after})));
 }
 
 /** "66 other genes: 35 of parent 12, 31 of parent 45, 4 mutated" */

@@ -2,11 +2,11 @@
 // sizes of the pieces in which they arrive.
 import {DamagedData} from "./errors";
 
-export const control_channel = 1, stream_channel = 2;
+export const control_channel = 1;
 
 const header_bytes = 8;
 const prefix = [0x45, 0x56, 1]; // "EV" and the framing version
-const body_bytes_max = [0, 64 << 20, 256 << 20]; // by channel: the largest body that a client accepts
+const body_bytes_max = [0, 64 << 20, 256 << 20]; // of control messages and of snapshots that a client accepts
 
 export interface Frame {
   channel: number;

@@ -11,7 +11,6 @@ import {
   type Field,
   type Fields,
   FIXED32,
-  FIXED64,
   FLOAT,
   FOUR_BYTES,
   GROUP,
@@ -19,10 +18,6 @@ import {
   LENGTH,
   MESSAGE,
   type MessageType,
-  SFIXED32,
-  SFIXED64,
-  SINT32,
-  SINT64,
   STRING,
   UINT32,
   UINT64,
@@ -119,14 +114,6 @@ class Reader {
         return this.#view.getFloat32(this.take(4), true);
       case FIXED32:
         return this.#view.getUint32(this.take(4), true);
-      case SFIXED32:
-        return this.#view.getInt32(this.take(4), true);
-      case FIXED64:
-      case SFIXED64: {
-        const at = this.take(8);
-        return whole(
-          this.#view.getUint32(at, true), this.#view.getUint32(at + 4, true), field.type === SFIXED64, field.is_wide);
-      }
     }
     this.#varint();
     switch (field.type) {
@@ -134,17 +121,10 @@ class Reader {
         return whole(this.#low, this.#high, true, field.is_wide);
       case UINT64:
         return whole(this.#low, this.#high, false, field.is_wide);
-      case SINT64: {
-        const sign = -(this.#low & 1);
-        return whole(
-          ((this.#low >>> 1 | this.#high << 31) ^ sign) >>> 0, (this.#high >>> 1 ^ sign) >>> 0, true, field.is_wide);
-      }
       case BOOL:
         return this.#low !== 0 || this.#high !== 0;
       case UINT32:
         return this.#low;
-      case SINT32:
-        return this.#low >>> 1 ^ -(this.#low & 1);
       case ENUM:
         return field.values!.names.get(this.#low | 0) ?? (this.#low | 0);
       default:

@@ -7,17 +7,12 @@ import {
   DOUBLE,
   ENUM,
   type Field,
-  FIXED32,
-  FIXED64,
   FLOAT,
   INT32,
   INT64,
   LENGTH,
   MESSAGE,
   type MessageType,
-  SFIXED32,
-  SINT32,
-  SINT64,
   STRING,
   UINT32,
   UINT64,
@@ -117,26 +112,9 @@ class Writer {
       case INT64:
         this.#write_signed(whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn));
         break;
-      case SINT32:
-      case SINT64: {
-        const bits = field.type === SINT32 ? 32n : 64n;
-        const number = BigInt(whole_of(value, path, -(1n << (bits - 1n)), (1n << (bits - 1n)) - 1n));
-        this.#write_unsigned(number < 0n ? -2n * number - 1n : 2n * number);
-        break;
-      }
-      case FIXED32:
-      case SFIXED32: {
-        const number = field.type === FIXED32 ? whole_of(value, path, 0, 0xffffffff) :
-                                                whole_of(value, path, -0x80000000, 0x7fffffff);
-        const at = this.#grow(4);
-        this.#view.setUint32(at, Number(number) >>> 0, true);
-        break;
-      }
-      default: { // FIXED64, SFIXED64
-        const number = field.type === FIXED64 ? whole_of(value, path, 0, 0xffffffffffffffffn) :
-                                                whole_of(value, path, -0x8000000000000000n, 0x7fffffffffffffffn);
-        const at = this.#grow(8);
-        this.#view.setBigUint64(at, BigInt.asUintN(64, BigInt(number)), true);
+      default: { // FIXED32
+        const number = whole_of(value, path, 0, 0xffffffff), at = this.#grow(4);
+        this.#view.setUint32(at, Number(number), true);
       }
     }
   }

@@ -224,7 +224,9 @@ export class Schema {
     const type_name = (description.type_name ?? "").replace(/^\./, "");
     const message = type === MESSAGE ? this.#types.get(type_name) ?? null : null;
     const values = type === ENUM ? this.#enums.get(type_name) ?? null : null;
-    const is_known = type === MESSAGE ? message !== null : type === ENUM ? values !== null : wire_type_of[type] >= 0;
+    const is_known = type === MESSAGE ? message !== null :
+      type === ENUM                   ? values !== null :
+                                        (wire_type_of[type] ?? -1) >= 0;
     if (!is_known) {
       throw new DamagedData(`the descriptor of the field ${name} has the type ${type} ${type_name}, which is unknown`);
     }

@@ -2,14 +2,7 @@
 import type {Server} from "../world/server";
 import {GeneTable} from "./gene_table";
 import {name_key, type OrganismName} from "./lineage";
-import {
-  first_of_whole_tree,
-  gene_values_max,
-  load_ancestors,
-  load_generations,
-  load_genes,
-  type LoadedLineage
-} from "./loading";
+import {first_of_whole_tree, gene_values_max, load_genes, load_lineage, type LoadedLineage} from "./loading";
 
 /** What a tree is made of. */
 export interface Subject {
@@ -65,9 +58,7 @@ export class FamilyData {
     this.#genes_wanted = "";
     this.gene_progress = null;
     const number = ++this.#number;
-    const loading = whole ? load_generations(source.server, source.world, first, root.generation) :
-                            load_ancestors(source.server, source.world, root, first);
-    loading.then(
+    load_lineage(source.server, source.world, root, whole, first).then(
       (lineage) => {
         if (number === this.#number) {
           this.lineage = lineage;

@@ -1,6 +1,6 @@
 // GeneTable: the genes of whole generations, read from the population table as CSV. Organisms that a user placed are
 // not in that table. No DOM.
-import {LineReader, type OrganismName} from "./lineage";
+import type {OrganismName} from "./lineage";
 
 export class GeneTable {
   #generations = new Map<number, Map<number, Float32Array[]>>(); // by island; one column per gene, row i is organism i
@@ -21,12 +21,11 @@ export class GeneTable {
 
 /** Reads the population table of one generation: its columns are island, organism and the genes. */
 export class PopulationReader {
-  #lines = new LineReader();
   #has_heading = false;
   #rows = new Map<number, number[][]>(); // by island: the genes of each organism
 
-  add(text: Uint8Array|undefined, last: boolean): void {
-    for (const line of this.#lines.add(text, last)) {
+  add(lines: readonly string[]): void {
+    for (const line of lines) {
       if (!this.#has_heading) {
         this.#has_heading = true;
         continue;

@@ -1,4 +1,4 @@
-// Lineage: organisms and their parents, read from the CSV that ExportRun sends in parts. No DOM.
+// Lineage: organisms and their parents, read from the CSV that ExportRun sends. No DOM.
 //
 // The table contains only numbers and words of the protocol, so no cell is quoted.
 import {family_texts} from "../texts/family";
@@ -32,36 +32,22 @@ const columns = [
   "parent_second_generation", "parent_second_island", "parent_second", "origin", "fitness", "child_count", "kept_count"
 ];
 
-/** Joins the parts of a table of lines. A part may end within a line, and within a character. */
-export class LineReader {
-  #decoder = new TextDecoder();
-  #rest = "";
-
-  /** Returns the lines that this part completes; `last` completes the table. */
-  add(text: Uint8Array|undefined, last: boolean): string[] {
-    const lines = (this.#rest + this.#decoder.decode(text ?? new Uint8Array(), {stream: !last})).split("\n");
-    this.#rest = last ? "" : lines.pop()!;
-    return lines.filter((line) => line !== "");
-  }
-}
-
 export class LineageReader {
   readonly ancestors = new Map<string, Ancestor>();
-  #lines = new LineReader();
   #places: number[]|null = null; // of `columns` in a line; null before the heading
   #passed = false;
 
   /** last_generation  ignores organisms of later generations */
-  constructor(readonly last_generation = Infinity) {}
+  constructor(readonly last_generation: number) {}
 
   /** Whether a later generation has begun. Generations rise in a table of all organisms, so the rest is not needed. */
   get has_passed(): boolean {
     return this.#passed;
   }
 
-  /** Adds a part; `last` completes the table. Throws an Error if a line is not a row of the lineage table. */
-  add(text: Uint8Array|undefined, last: boolean): void {
-    for (const line of this.#lines.add(text, last)) {
+  /** Throws an Error if a line is not a row of the lineage table. */
+  add(lines: readonly string[]): void {
+    for (const line of lines) {
       const cells = line.split(",");
       if (!this.#places) {
         this.#places = columns.map((column) => cells.indexOf(column));

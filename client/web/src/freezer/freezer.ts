@@ -3,9 +3,10 @@
 // They are in IndexedDB, which the browser keeps apart for each address of a server. Two object stores have the same
 // keys: "kept" describes each entry, and "genes" has its chromosomes, which may be large.
 //
-// Owner    one per page, kept_organisms(). Other tabs change the same entries; on_change() reports their changes, too.
+// Owner    one per page, kept_organisms(). Other tabs change the same entries; `changes` reports theirs, too.
 // Limits   kept_max entries and genes_bytes_max bytes of genes. The browser may refuse to store more earlier.
 import {freezer_texts} from "../texts/freezer";
+import {Listeners} from "../world/changes";
 import {name_problem, unused_name} from "../world/names";
 
 import type {Population} from "./population_csv";
@@ -36,16 +37,12 @@ export interface Kept {
 
 export class Freezer {
   #database: Promise<IDBDatabase>|null = null;
-  #listeners = new Set<() => void>();
+  /** Calls its listeners after each change, also by other tabs. */
+  readonly changes = new Listeners();
   #other_tabs = new BroadcastChannel(database_name);
 
   constructor() {
-    this.#other_tabs.onmessage = () => this.#listeners.forEach((listener) => listener());
-  }
-
-  /** Calls `listener` after each change, also by other tabs. */
-  on_change(listener: () => void): void {
-    this.#listeners.add(listener);
+    this.#other_tabs.onmessage = () => this.changes.call();
   }
 
   /** The entries, in the order of their names. */
@@ -70,7 +67,7 @@ export class Freezer {
     const {kept, genes, end} = await this.#begin("readwrite");
     const entries = await result_of<Kept[]>(kept.getAll());
     const genes_bytes = population.islands.reduce((sum, island) => sum + island.byteLength, 0);
-    const problem = name_problem("name", name) || room_problem(entries, genes_bytes);
+    const problem = name_problem(name) || room_problem(entries, genes_bytes);
     if (problem) {
       throw new Error(problem);
     }
@@ -97,7 +94,7 @@ export class Freezer {
       result_of<Kept|undefined>(kept.get(from)), result_of<Float32Array[]>(genes.get(from)),
       result_of<IDBValidKey[]>(kept.getAllKeys())
     ]);
-    const problem = name_problem("name", to) || (about ? "" : freezer_texts.gone(from));
+    const problem = name_problem(to) || (about ? "" : freezer_texts.gone(from));
     if (problem) {
       throw new Error(problem);
     }
@@ -121,7 +118,7 @@ export class Freezer {
 
   #changed(): void {
     this.#other_tabs.postMessage(null);
-    this.#listeners.forEach((listener) => listener());
+    this.changes.call();
   }
 
   async #begin(mode: IDBTransactionMode): Promise<{kept: IDBObjectStore; genes: IDBObjectStore; end: Promise<void>}> {

@@ -119,9 +119,6 @@ export function neighbour(diagram: BrainDiagram, neuron: number, key: string): n
   return nearest;
 }
 
-/** "−0.42" */
-export const activation_text = texts.number;
-
 /** "hidden3 → turn: weight −0.42" */
 export function connection_text(diagram: BrainDiagram, {from, to, weight}: Connection): string {
   return texts.connection(diagram.neurons[from]!.name, diagram.neurons[to]!.name, weight);

@@ -3,7 +3,7 @@
 import {none_left} from "../core/messages";
 import type {OrganismInfo} from "../core/protocol";
 import {organism_texts as texts} from "../texts/organism";
-import type {Child, OrganismHistory, Origin, Picks, Range} from "./history";
+import type {Child, OrganismHistory, Origin, Picks} from "./history";
 
 export {gene_label, gene_number} from "../texts/genes";
 
@@ -79,9 +79,4 @@ export function child_text({id, other_parent, unchanged}: Child): string {
   return other_parent !== null ? texts.child_with(id, other_parent) :
     unchanged                  ? texts.child_unchanged(id) :
                                  texts.child_of_one(id);
-}
-
-/** "Range in this generation: 83.6 to 131.2, mean 104.9" */
-export function range_text({min, max, mean}: Range): string {
-  return texts.gene_range(min, max, mean);
 }

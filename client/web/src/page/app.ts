@@ -94,8 +94,8 @@ export class App implements KeyTarget {
         h("div", {class: "top"}, this.#about, this.#banners.element), this.introduction.element, this.panes.element,
         this.#show_column, this.column.element, this.#notices.element);
     set_attribute(this.element, "data-column", of_browser.get("column") === "collapsed" ? "collapsed" : "shown");
-    server.on_change(() => this.refresh());
-    server.on_event((event) => this.#announce(event));
+    server.changes.listen(() => this.refresh());
+    server.events.listen((event) => this.#announce(event));
     listen_to_keys(this);
     this.refresh();
     this.follow_link(location.hash);
@@ -108,17 +108,17 @@ export class App implements KeyTarget {
 
   /** Shows the present state. */
   refresh(): void {
-    const server = this.server, names = server.world_names, {areas} = this;
+    const server = this.server, names = server.worlds.names, {areas} = this;
     this.#notices.refresh();
     const first = names.includes(first_world) ? first_world : names[0];
-    if (server.worlds_known && !areas[0]!.world.name && first !== undefined) {
+    if (server.worlds.are_known && !areas[0]!.world.name && first !== undefined) {
       areas[0]!.world.show(first);
     }
     const ended = areas.length > 1 && areas.find((area) => area.world.name === ""); // its world was deleted
     if (ended) {
       this.panes.close(ended);
     }
-    const is_empty = server.worlds_known && names.length === 0;
+    const is_empty = server.worlds.are_known && names.length === 0;
     areas.forEach((area) => (area.element.hidden = is_empty));
     if (is_empty && !this.#empty.isConnected) {
       this.panes.element.append(this.#empty);
@@ -164,7 +164,7 @@ export class App implements KeyTarget {
   };
 
   notify: Notify = (text, holds, action, stays) => {
-    const take_part = {label: column_texts.take_part, act: () => this.server.set_taking_part(true)};
+    const take_part = {label: column_texts.take_part, act: () => this.server.access.set_taking_part(true)};
     this.#notices.show(text, holds, text === access_texts.watching ? take_part : action, stays);
   };
 
@@ -196,7 +196,7 @@ export class App implements KeyTarget {
 
   fork = async(name?: string): Promise<void> => {
     const server = this.server, world = this.world(), {island} = world;
-    const fork = name ?? unused_name(world.name, server.world_names);
+    const fork = name ?? unused_name(world.name, server.worlds.names);
     let begin: WorldInfo = {};
     const act = async(): Promise<void> => {
       begin = await server.request("fork_world", {world: world.shown, name: fork});

@@ -1,6 +1,7 @@
 // Gestures: what a user does with pointers, the wheel and the arrow keys on a canvas: pan, zoom, pinch, hover, click,
 // hold arrow keys.
 import type {Point} from "../render/camera";
+import {wheel_notches} from "../widgets/wheel";
 
 /** What the gestures act on. Points are in CSS pixels of the canvas. */
 export interface GestureTarget {
@@ -19,9 +20,7 @@ const click_pixels_max = {
   pen: 8,
   touch: 10
 }; // a larger movement is a drag
-const wheel_zoom_factor = 1.2; // per notch of 100 pixels
-const notch_pixels = 100, notches_max = 3;
-const line_pixels = 33, page_pixels = 400; // of a wheel that counts in lines or pages
+const wheel_zoom_factor = 1.2; // per notch
 const pinch_notches = 5; // a pinch on a touchpad comes as small steps with ctrlKey
 const pan_pixels_per_s = 700; // by the arrow keys
 const frame_min_ms = 8, frame_max_ms = 100;
@@ -153,11 +152,8 @@ export class Gestures {
 
   #wheel(event: WheelEvent): void {
     event.preventDefault();
-    const unit = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? line_pixels :
-      event.deltaMode === WheelEvent.DOM_DELTA_PAGE            ? page_pixels :
-                                                                 1;
-    const notches = Math.min(Math.max((-event.deltaY * unit) / notch_pixels, -notches_max), notches_max);
-    this.#target.zoomed(this.#place_of(event), wheel_zoom_factor ** (notches * (event.ctrlKey ? pinch_notches : 1)));
+    const notches = wheel_notches(event) * (event.ctrlKey ? pinch_notches : 1);
+    this.#target.zoomed(this.#place_of(event), wheel_zoom_factor ** notches);
   }
 
   #key_down(event: KeyboardEvent): void {

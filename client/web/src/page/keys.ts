@@ -191,12 +191,12 @@ export function key_lines(): KeyLine[] {
 
 /** Runs a command, or shows why the user may not. */
 async function command(app: KeyTarget, kind: RequestKind, act: () => Promise<void>): Promise<void> {
-  const world = app.world(), why = app.server.why_not(kind, world.shown);
+  const world = app.world(), why = app.server.access.why_not(kind, world.shown);
   if (!world.shown) {
     return;
   }
   if (why) {
-    app.notify(why, () => app.server.why_not(kind, world.shown) === why);
+    app.notify(why, () => app.server.access.why_not(kind, world.shown) === why);
   } else if (world.control.is_over && kind !== "set_speed") {
     const {is_replay} = world;
     app.notify(
@@ -213,7 +213,7 @@ function move_island(app: KeyTarget, by: number): void {
 }
 
 function next_world(app: KeyTarget): void {
-  const names = app.server.world_names;
+  const names = app.server.worlds.names;
   if (names.length > 0) {
     app.world().show(names[(names.indexOf(app.world().name) + 1) % names.length]!);
   }

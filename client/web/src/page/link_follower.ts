@@ -49,18 +49,18 @@ export class LinkFollower {
 
   async #show(read: ReadLink, is_newest: () => boolean): Promise<void> {
     const {moment} = read, {server} = this.#context, world = this.#context.world();
-    const name = moment.world ?? world.name, info = server.world(name);
-    if (!info && server.damage_of(name)) {
+    const name = moment.world ?? world.name, info = server.worlds.find(name);
+    if (!info && server.worlds.damage_of(name)) {
       world.show(name);
       return;
     }
     if (!info) {
-      const names = server.worlds.filter((one) => one.replay?.replay_of === undefined).map(({name: listed}) => listed);
-      read.wrong.unshift(texts.no_such_world(name, names));
+      const known = server.worlds.all.filter((one) => one.replay?.replay_of === undefined);
+      read.wrong.unshift(texts.no_such_world(name, known.map((one) => one.name)));
       this.#context.open("worlds");
       return;
     }
-    const rate_max = Math.floor(server.limits.snapshot_rate_hz_max ?? rate_max_hz);
+    const rate_max = Math.floor(server.state.welcome?.limits?.snapshot_rate_hz_max ?? rate_max_hz);
     world.feed.set_rate(within(read, "rate", texts.this_server, 1, rate_max));
     const island = within(read, "island", texts.world(name), 0, (info.island_count ?? 1) - 1) ?? 0;
     if (moment.generation === null || world.name !== name) {

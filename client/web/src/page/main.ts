@@ -2,6 +2,7 @@
 // open.
 import {start_texts} from "../texts/start";
 import {show_icon} from "../widgets/icon";
+import {columns, figures} from "../world/measurements";
 import {Server} from "../world/server";
 import {of_tab} from "../world/storage";
 import {Tokens} from "../world/tokens";
@@ -51,7 +52,7 @@ async function run(): Promise<void> {
   const url = `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/session`;
   const server = new Server(worker, descriptor, url);
   let app: App|null = null, state = server.state;
-  server.on_change(() => {
+  server.changes.listen(() => {
     if (server.state === state) {
       return;
     }
@@ -71,10 +72,12 @@ async function run(): Promise<void> {
   const show_visibility = (): void => server.post({kind: "visible", visible: document.visibilityState !== "hidden"});
   document.addEventListener("visibilitychange", show_visibility);
   show_visibility();
-  server.on_change(() => {
-    if (server.state.phase === "open" && server.worlds_known) {
+  server.changes.listen(() => {
+    if (server.state.phase === "open" && server.worlds.are_known) {
       app ??= new App(server, tokens);
-      Object.assign(globalThis, {evod: {server, app}}); // for tests and for the console of the browser
+      Object.assign(globalThis, {
+        evod: {server, app, figures: () => figures(server), columns: (pane: number) => columns(server, pane)}
+      }); // for tests and for the console of the browser
       if (!app.element.isConnected) {
         start.element.replaceWith(app.element);
       }

@@ -2,7 +2,7 @@
 //
 // The pane sends "pane", "close_pane", "resize", "camera", "islands", "pointer" and "pick" to the worker, which draws.
 // ViewedWorld sends "watch", "look", "select" and "population".
-import type {Drawing, FromWorker, ToWorker, Tool} from "../core/messages";
+import type {Drawing, FromWorker, Tool} from "../core/messages";
 import type {Point, Size} from "../render/camera";
 import {pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
@@ -17,16 +17,8 @@ import {PaneTool} from "./pane_tool";
 import {PaneView} from "./pane_view";
 import {Picker, type Picked} from "./picker";
 
-/** The worker as the pane sees it. */
-export interface WorkerLink {
-  post(message: ToWorker, transfer?: Transferable[]): void;
-  /** Calls `listener` for each message. Returns a function that ends it. */
-  on_message(listener: (message: FromWorker) => void): () => void;
-}
-
 export interface PaneOptions {
   world: ViewedWorld;
-  worker: WorkerLink;
   notify: Notify;
   /** Called when the user presses or focuses the pane. */
   on_focus?(): void;
@@ -73,20 +65,21 @@ export class Pane {
     this.element =
       h("div", {class: "pane"}, this.#canvas, this.#legend.element, this.#hint, this.#note, this.tiles.element,
         h("div", {class: "pane-focus"}));
-    this.#picker = new Picker(this.#world.feed.pane, options.worker.post.bind(options.worker));
+    this.#picker = new Picker(this.#world.feed.pane, (message) => this.#world.server.post(message));
     this.#gestures = new Gestures(this.#canvas, this.#target());
     this.#canvas.addEventListener("pointerdown", () => options.on_focus?.());
     this.#canvas.addEventListener("focus", () => options.on_focus?.());
     this.#canvas.addEventListener("keydown", (event) => this.#key_down(event));
     this.#ends.push(
       observe_size(this.#canvas, (size, pixel_ratio) => this.#resized(size, pixel_ratio)),
-      options.worker.on_message((message) => this.#take(message)), this.#world.changes.listen(() => this.#refresh()));
+      this.#world.server.messages.listen((message) => this.#take(message)),
+      this.#world.changes.listen(() => this.#refresh()));
     if (new OffscreenCanvas(1, 1).getContext("webgl2") === null) {
       set_text(this.#note, pane_texts.no_webgl);
       this.#note.hidden = false;
     } else {
       const canvas = this.#canvas.transferControlToOffscreen();
-      options.worker.post({kind: "pane", pane: this.#world.feed.pane, canvas}, [canvas as unknown as Transferable]);
+      this.#world.server.post({kind: "pane", pane: this.#world.feed.pane, canvas}, [canvas as unknown as Transferable]);
     }
     this.#refresh();
   }
@@ -94,7 +87,7 @@ export class Pane {
   close(): void {
     this.#gestures.close();
     this.#ends.forEach((end) => end());
-    this.#options.worker.post({kind: "close_pane", pane: this.#world.feed.pane});
+    this.#world.server.post({kind: "close_pane", pane: this.#world.feed.pane});
     this.element.remove();
   }
 
@@ -150,7 +143,7 @@ export class Pane {
 
   #resized(size: Size, pixel_ratio: number): void {
     this.view.size = size;
-    this.#options.worker.post({kind: "resize", pane: this.#world.feed.pane, ...size, pixel_ratio});
+    this.#world.server.post({kind: "resize", pane: this.#world.feed.pane, ...size, pixel_ratio});
     this.#refresh();
   }
 
@@ -206,7 +199,7 @@ export class Pane {
     const key = `${at?.x} ${at?.y} ${tool}`;
     if (key !== this.#sent_pointer) {
       this.#sent_pointer = key;
-      this.#options.worker.post({kind: "pointer", pane: this.#world.feed.pane, at, tool});
+      this.#world.server.post({kind: "pointer", pane: this.#world.feed.pane, at, tool});
     }
   }
 

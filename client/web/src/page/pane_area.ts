@@ -61,7 +61,7 @@ export class PaneArea {
     this.#link.addEventListener("click", () => options.link());
     this.#beside.addEventListener("click", () => options.beside());
     const start = (): void => {
-      world.server.set_taking_part(true);
+      world.server.access.set_taking_part(true);
       void options.attempt(() => world.control.run());
     };
     this.#start =
@@ -134,7 +134,7 @@ export class PaneArea {
       this.#foot.lastElementChild!.remove();
     }
     texts.forEach((text, i) => set_text(this.#foot.children[i] ?? this.#foot.appendChild(h("span", {})), text));
-    this.#start.hidden = world.is_replay || world.control.state !== "RUN_STATE_WAITING" || !server.may_take_part;
+    this.#start.hidden = world.is_replay || world.control.state !== "RUN_STATE_WAITING" || !server.access.may_take_part;
     const is_waiting = !snapshot && world.shown !== "" && !this.pane.tiles.is_on;
     set_text(this.#message, world.feed.problem || (is_waiting ? pane_texts.waiting : ""));
     this.#message.hidden = this.#message.textContent === "";

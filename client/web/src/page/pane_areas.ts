@@ -111,7 +111,6 @@ export class PaneAreas {
     const world = new ViewedWorld(this.#server, ++this.#last_pane);
     const area: PaneArea = new PaneArea(world, {
       ...this.#options,
-      worker: this.#server,
       on_focus: () => this.#focus(area),
       on_tool: () => this.#options.on_change(),
       on_view: (view, why) => {

@@ -58,7 +58,7 @@ export class PaneTool {
     if (world.is_replay) {
       return tool_texts.is_replay;
     }
-    const why = world.server.why_not(tool === "remove" ? "remove" : "place", world.shown);
+    const why = world.server.access.why_not(tool === "remove" ? "remove" : "place", world.shown);
     if (why !== "") {
       return why;
     }

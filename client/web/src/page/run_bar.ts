@@ -73,7 +73,7 @@ export class RunBar {
   refresh(): void {
     const world = this.#context.world(), server = world.server, info = world.info;
     const why_control =
-      !world.shown || !(world.snapshot || info) ? texts.no_world : server.why_not("pause", world.shown);
+      !world.shown || !(world.snapshot || info) ? texts.no_world : server.access.why_not("pause", world.shown);
     const why_run = why_control ||
       (world.control.state === "RUN_STATE_TERMINATED" ? texts.has_ended :
          world.control.at_end                         ? texts.end_of_replay :
@@ -93,10 +93,10 @@ export class RunBar {
     set_allowed(
       this.#replay, world.past.is_own_replay ? "" : world.past.problem,
       world.past.is_own_replay ? texts.live_help : texts.replay_help);
-    const why_create = server.why_not("create_world");
+    const why_create = server.access.why_not("create_world");
     set_allowed(this.#fork, !info ? texts.no_world : why_create, texts.fork_help);
     set_allowed(this.#new, why_create, texts.create_help);
-    const why_speed = why_control && (server.why_not("set_speed", world.shown) || why_control),
+    const why_speed = why_control && (server.access.why_not("set_speed", world.shown) || why_control),
           max = world.control.speed?.max === true;
     set_attribute(this.#speed, "data-allowed", String(why_speed === "")); // without permission, it takes room in vain
     set_allowed(this.#slower, why_speed, texts.slower_help);

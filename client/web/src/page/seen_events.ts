@@ -30,7 +30,7 @@ export class SeenEvents {
   constructor(world: ViewedWorld) {
     this.#world = world;
     this.#forked = world.past.forked;
-    this.#end = world.server.on_event((event) => this.#take(event));
+    this.#end = world.server.events.listen((event) => this.#take(event));
   }
 
   close(): void {
@@ -39,7 +39,8 @@ export class SeenEvents {
 
   /** Forgets the events of another run, and takes note of a fork. */
   refresh(): void {
-    const {name, server, past: {forked}, snapshot} = this.#world, of = `${name} ${server.world(name)?.run_id ?? ""}`;
+    const {name, server, past: {forked}, snapshot} = this.#world;
+    const of = `${name} ${server.worlds.find(name)?.run_id ?? ""}`;
     if (of !== this.#of) {
       this.#of = of;
       this.all = [];

@@ -61,7 +61,7 @@ export class Start {
       this.#token.value = "";
       server.connect(tokens.use(token));
     });
-    server.on_change(() => this.#refresh(server, tokens));
+    server.changes.listen(() => this.#refresh(server, tokens));
   }
 
   #refresh(server: Server, tokens: Tokens): void {

@@ -36,7 +36,7 @@ export class Summary {
     this.#server = server;
     this.#tools = tools;
     this.#run_bar = new RunBar(context);
-    this.#part = h("button", {type: "button", onclick: () => server.set_taking_part(!server.taking_part)});
+    this.#part = h("button", {type: "button", onclick: () => server.access.set_taking_part(!server.access.taking_part)});
     this.element = h(
       "div", {class: "summary"},
       h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,
@@ -47,17 +47,17 @@ export class Summary {
 
   refresh(): void {
     this.#refresh_choices();
-    const world = this.#context.world(), server = this.#server, {state, taking_part} = server;
-    const is_damaged = server.damage_of(world.name) !== "";
+    const world = this.#context.world(), server = this.#server, {state, access: {taking_part}} = server;
+    const is_damaged = server.worlds.damage_of(world.name) !== "";
     const state_text = is_damaged ? texts.is_damaged : world.name ? texts.loading : texts.none_open;
     set_text(this.#experiment, world.parameters.experiment || state_text);
     this.#legend.refresh(world);
     this.#run_bar.refresh();
-    this.#part.hidden = !server.may_take_part;
+    this.#part.hidden = !server.access.may_take_part;
     this.#part.className = taking_part ? "button" : "button button-primary";
     set_text(this.#part, taking_part ? texts.only_watch : texts.take_part);
     const part_text = state.phase !== "open" ? texts.no_connection :
-      !server.may_take_part                  ? texts.is_viewer :
+      !server.access.may_take_part                  ? texts.is_viewer :
       taking_part                            ? texts.takes_part :
                                                texts.watches;
     set_text(this.#part_text, part_text);
@@ -67,10 +67,10 @@ export class Summary {
 
   #refresh_choices(): void {
     const world = this.#context.world(), server = this.#server;
-    const listed = server.worlds.filter((one) => !one.replay || one.name === world.name);
+    const listed = server.worlds.all.filter((one) => !one.replay || one.name === world.name);
     const names = [
       ...listed.map(({name}) => ({value: name, text: name})),
-      ...server.damaged.map(({name}) => ({value: name, text: texts.damaged(name)}))
+      ...server.worlds.damaged.map(({name}) => ({value: name, text: texts.damaged(name)}))
     ];
     set_options(this.#world, world.name ? names : [{value: "", text: texts.no_world}, ...names], world.name);
     const islands = world.info?.island_count ?? world.snapshot?.island_count ?? 1;

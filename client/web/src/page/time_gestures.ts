@@ -3,6 +3,7 @@
 //
 // A drag chooses moments; a drag on the labels above the line moves a line that is zoomed, and so do two fingers, which
 // also zoom.
+import {wheel_notches, wheel_unit_px} from "../widgets/wheel";
 
 /** What the gestures act on. Positions are 0 to 1. */
 export interface TimeTarget {
@@ -18,8 +19,7 @@ export interface TimeTarget {
 
 const labels_px = 15; // their height
 const touch_px = 8; // a larger movement of one finger is a drag
-const wheel_zoom_factor = 1.25; // per notch of 100 pixels
-const notch_pixels = 100, notches_max = 3, line_pixels = 33;
+const wheel_zoom_factor = 1.25; // per notch
 
 export class TimeGestures {
   #gesture: "none"|"touch"|"choose"|"pan"|"pinch" = "none";
@@ -110,14 +110,12 @@ export class TimeGestures {
 
   #wheel(event: WheelEvent): void {
     event.preventDefault();
-    const unit = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 1 : line_pixels,
-          {width} = this.#element.getBoundingClientRect();
+    const {width} = this.#element.getBoundingClientRect();
     const sideways = event.shiftKey && event.deltaX === 0 ? event.deltaY : event.deltaX;
     if (Math.abs(sideways) > Math.abs(event.deltaY) || event.shiftKey) {
-      this.#target.panned((sideways * unit) / Math.max(width, 1));
+      this.#target.panned((sideways * wheel_unit_px(event)) / Math.max(width, 1));
       return;
     }
-    const notches = Math.min(Math.max((-event.deltaY * unit) / notch_pixels, -notches_max), notches_max);
-    this.#target.zoomed(this.#part_at(event.clientX), wheel_zoom_factor ** notches);
+    this.#target.zoomed(this.#part_at(event.clientX), wheel_zoom_factor ** wheel_notches(event));
   }
 }

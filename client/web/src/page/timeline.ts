@@ -106,7 +106,7 @@ export class Timeline {
     const is_running = world.is_replay && world.control.state === "RUN_STATE_RUNNING";
     const why = !world.is_replay ? timeline_texts.is_live_help :
       world.past.is_own_replay   ? "" :
-                                   world.server.why_not("seek", world.shown);
+                                   world.server.access.why_not("seek", world.shown);
     const is_first = range !== null && generation <= range.first_generation && snapshot?.generation_tick === 0;
     const is_last = range !== null && generation >= range.last_generation;
     set_text(this.#play, is_running ? texts.pause.label : texts.play.label);

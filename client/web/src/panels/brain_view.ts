@@ -4,7 +4,6 @@
 // Keyboard  The drawing is one tab stop. Arrow keys move between neurons; Enter steps through the connections of a
 // neuron.
 import {
-  activation_text,
   brain_diagram,
   BrainDiagram,
   connection_text,
@@ -130,7 +129,7 @@ export class BrainView {
         fill.setAttribute("fill-opacity", Math.min(1, Math.abs(neuron.activation)).toFixed(2));
       }
       if (value) {
-        set_text(value, activation_text(neuron.activation));
+        set_text(value, texts.number(neuron.activation));
       }
     });
   }

@@ -6,6 +6,7 @@ import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {check, hint} from "../widgets/form";
 import {event_text} from "../world/event_text";
+import {read_export} from "../world/run_export";
 
 import type {Event as ProtocolEvent} from "../core/protocol";
 import type {Panel, PanelContext} from "../world/panel_context";
@@ -59,7 +60,7 @@ export class EventsPanel implements Panel {
     this.element =
       h("div", {class: "panel panel-events"}, h("div", {class: "row"}, this.#read), this.#title, this.#choices,
         this.#empty, this.#list);
-    context.server.on_event((event) => this.#take(event));
+    context.server.events.listen((event) => this.#take(event));
   }
 
   refresh(): void {
@@ -99,15 +100,11 @@ export class EventsPanel implements Panel {
 
   /** Reads the journal of the shown run: one line of JSON for each command. */
   async #read_journal(): Promise<void> {
-    const {server} = this.#context, world = this.#context.world().shown, decoder = new TextDecoder();
-    let part = await server.request("export_run", {world, table: "RUN_TABLE_EVENTS", format: "TEXT_FORMAT_JSON_LINES"});
-    let text = decoder.decode(part.text ?? new Uint8Array(), {stream: true});
-    while (!part.last) {
-      part = await server.request("continue_export", {export_id: part.export_id});
-      text += decoder.decode(part.text ?? new Uint8Array(), {stream: true});
-    }
-    const lines =
-      text.split("\n").filter(Boolean).map((line): JournalLine => JSON.parse(line)).reverse().slice(0, rows_max);
+    const world = this.#context.world().shown, read: string[] = [];
+    await read_export(
+      this.#context.server, {world, table: "RUN_TABLE_EVENTS", format: "TEXT_FORMAT_JSON_LINES"},
+      (part) => read.push(...part));
+    const lines = read.slice(-rows_max).reverse().map((line): JournalLine => JSON.parse(line));
     this.#show_journal({
       world,
       rows: lines.map((line) => row_of(texts.command_place(line.tick, line.client ?? ""), command_text(line)))

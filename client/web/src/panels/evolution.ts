@@ -71,12 +71,12 @@ export class Evolution {
     }
     const world = this.#context.world(), at_once = {label: texts.at_once, act: () => this.#show_now()};
     const run = {
-      label: server.taking_part ? texts.run(count) : texts.take_part_and_run(count),
+      label: server.access.taking_part ? texts.run(count) : texts.take_part_and_run(count),
       act: () => this.#run_first()
     };
     const text = texts.asks(generation_of(world));
-    const actions = server.may_take_part ? [run, at_once, cancel] : [at_once, cancel];
-    return [{name: `evolution ${server.taking_part}`, kind: "info", text, actions}];
+    const actions = server.access.may_take_part ? [run, at_once, cancel] : [at_once, cancel];
+    return [{name: `evolution ${server.access.taking_part}`, kind: "info", text, actions}];
   }
 
   /** Shows the present state. */
@@ -114,8 +114,8 @@ export class Evolution {
 
   #run_first(): void {
     const world = this.#context.world(), {server} = this.#context;
-    if (!server.taking_part) {
-      server.set_taking_part(true);
+    if (!server.access.taking_part) {
+      server.access.set_taking_part(true);
     }
     const from = generation_of(world), {speed} = world.control;
     const advance: Advance = {

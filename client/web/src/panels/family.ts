@@ -9,7 +9,7 @@ import {place_of} from "../family/tree";
 import {origin_run_of} from "../world/origin";
 import {family_texts} from "../texts/family";
 import {h, set_text} from "../widgets/dom";
-import {hint, row} from "../widgets/form";
+import {hint, row, symbol_button} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
 import {FamilyChoices} from "./family_choices";
@@ -54,14 +54,12 @@ export class FamilyPanel implements Panel {
   constructor(context: PanelContext) {
     this.#context = context;
     this.#origin = new OriginNote(context, () => undefined);
-    const button = (text: string, label: string, act: () => void): HTMLElement =>
-      h("button", {class: "button", title: label, "aria-label": label, onclick: act}, text);
     this.#tree_parts =
       h("div", {class: "panel"}, this.#status.loaded, this.#origin.element, this.#status.sentence,
         row(
-          button("−", family_texts.zoom_out, () => this.#drawing.zoom(1 / zoom_of_button)),
-          button("+", family_texts.zoom_in, () => this.#drawing.zoom(zoom_of_button)),
-          button(family_texts.fit, family_texts.fit_title, () => this.#drawing.fit())),
+          symbol_button("−", family_texts.zoom_out, () => this.#drawing.zoom(1 / zoom_of_button)),
+          symbol_button("+", family_texts.zoom_in, () => this.#drawing.zoom(zoom_of_button)),
+          symbol_button(family_texts.fit, family_texts.fit_title, () => this.#drawing.fit())),
         this.#drawing.element, this.#legend, this.#note.element, this.#marks.element, this.#table.element,
         hint(family_texts.help_lines), hint(family_texts.help_keys));
     this.element =
@@ -167,7 +165,7 @@ export class FamilyPanel implements Panel {
     this.#drawing.show(
       {
         tree,
-        width: this.#width.within(280, 1600),
+        width: this.#width.within(1600),
         colours: colouring.colours,
         lines_in_colours: colour_by.kind === "lineage",
         of_all,

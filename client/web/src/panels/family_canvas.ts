@@ -2,8 +2,9 @@
 import type {AncestorsOfTwo, CommonAncestors} from "../family/common_ancestors";
 import {is_copy} from "../family/lineage";
 import type {FamilyTree, Place, Spot} from "../family/spot";
-import type {TreeView} from "../family/tree_view";
 import {with_separators} from "../texts/numbers";
+import {css_colours, type CssColours} from "../widgets/theme";
+import type {Range} from "../widgets/visible_range";
 
 export interface Scene {
   tree: FamilyTree;
@@ -44,13 +45,10 @@ const theme_colours = {
   focus: "--focus",
   warn: "--warn",
 };
-type Theme = {
-  [name in keyof typeof theme_colours]: string
-};
+type Theme = CssColours<typeof theme_colours>;
 
 export function theme_of(element: Element): Theme {
-  const style = getComputedStyle(element), value_of = (name: string): string => style.getPropertyValue(name).trim();
-  return Object.fromEntries(Object.entries(theme_colours).map(([name, css]) => [name, value_of(css)])) as Theme;
+  return css_colours(element, theme_colours);
 }
 
 /** Where the organisms of a tree are on a canvas of this width, in CSS pixels. */
@@ -60,15 +58,15 @@ export class FamilyLayout {
   readonly each: number; // between neighbours at the least distance
   readonly radius: number;
 
-  constructor(readonly tree: FamilyTree, readonly width: number, readonly view: TreeView) {
+  constructor(readonly tree: FamilyTree, readonly width: number, readonly view: Range) {
     this.row_height = row_height_of(tree.rows.length);
     this.height = tree.rows.length * this.row_height + 8;
-    this.each = (width - label_width - margin) / (view.end - view.begin);
+    this.each = (width - label_width - margin) / (view.max - view.min);
     this.radius = Math.min(11, this.row_height * 0.32, Math.max(1.2, this.each * 0.42));
   }
 
   x_of(spot: Spot): number {
-    return label_width + (spot.x - this.view.begin) * this.each;
+    return label_width + (spot.x - this.view.min) * this.each;
   }
 
   y_of(row: number): number {
@@ -81,7 +79,7 @@ export class FamilyLayout {
 
   /** The position in units of the tree. */
   unit_at(x: number): number {
-    return this.view.begin + (x - label_width) / this.each;
+    return this.view.min + (x - label_width) / this.each;
   }
 
   /** The organism nearest to a point, at most `reach` away. */
@@ -194,7 +192,7 @@ export class FamilyPainter {
 
   #paint_lines(): void {
     const {tree, colours, lines_in_colours, of_two} = this.#scene, context = this.#context, layout = this.#layout;
-    const visible = (layout.view.end - layout.view.begin) / tree.width;
+    const visible = (layout.view.max - layout.view.min) / tree.width;
     this.#curved = tree.rows.reduce((sum, row) => sum + row.length, 0) * visible <= curves_max;
     const first = new Map<string, Lines>(), second = new Lines(), emphasised = new Lines();
     tree.rows.forEach((row, i) => row.forEach((spot, place) => {

@@ -1,10 +1,10 @@
 // FamilyChanges: which genes of an organism mutated when it was bred. Reads the breeding of its generation when the
 // pointer or the keyboard stays at the organism, a page of organisms at a time.
-import {inheritance_of, mutation_text} from "../breeding/inheritance";
+import {inheritance_of} from "../breeding/inheritance";
 import type {Descendant} from "../core/protocol";
 import {name_key, type OrganismName} from "../family/lineage";
 import {gene_label} from "../organism/texts";
-import {gene_text} from "../texts/breeding";
+import {breeding_texts, gene_text} from "../texts/breeding";
 import {family_texts} from "../texts/family";
 import type {ViewedWorld} from "../world/world";
 
@@ -79,7 +79,7 @@ function changes_text(descendant: Descendant, gene_names: readonly string[]): st
                                                      gene: gene_label(gene_names[change.gene] ?? String(change.gene)),
                                                      before: gene_text(change.before),
                                                      after: gene_text(change.after),
-                                                     how: mutation_text(change.kind),
+                                                     how: breeding_texts.mutation[change.kind],
                                                    })),
            Math.max(0, changes.length - changes_shown_max)) +
     (order ? family_texts.order_mutated(order.method ?? "") : "");

@@ -5,14 +5,17 @@
 //           M marks, + − 0 zoom.
 import type {Place} from "../family/spot";
 import {neighbour} from "../family/tree";
-import {moved, revealed, type TreeView, zoomed} from "../family/tree_view";
 import {set_attribute} from "../widgets/controls";
 import {h} from "../widgets/dom";
+import {on_theme_change} from "../widgets/theme";
+import {moved, type Range, revealed, zoomed} from "../widgets/visible_range";
+import {wheel_notches} from "../widgets/wheel";
 import {FamilyLayout, FamilyPainter, same_scene, type Scene, theme_of} from "./family_canvas";
 
 const reach_px = 24; // a pointer this near to an organism points at it
 const zoom_of_key = 1.5, zoom_of_notch = 1.25;
 const drag_px = 4; // a shorter movement is a click
+const organisms_min = 8; // the fewest in the width
 
 export interface FamilyActions {
   /** An organism is to be read: the pointer or the keyboard points at it; null: none. */
@@ -34,9 +37,9 @@ export class FamilyDrawing {
   readonly #actions: FamilyActions;
   #scene: Scene|null = null;
   #layout: FamilyLayout|null = null;
-  #view: TreeView = {begin: 0, end: 1};
+  #view: Range = {min: 0, max: 1}; // in units of the tree
   #pointed_at: Place|null = null;
-  #drag: {pointer: number; x: number; view: TreeView; moved: boolean}|null = null;
+  #drag: {pointer: number; x: number; view: Range; moved: boolean}|null = null;
   #request = 0;
 
   constructor(actions: FamilyActions) {
@@ -61,8 +64,7 @@ export class FamilyDrawing {
         onblur: () => this.#paint_upper(),
       },
         this.#base, this.#upper, this.#cursor);
-    document.addEventListener("evod-theme", () => this.#paint_soon());
-    matchMedia("(prefers-color-scheme: light)").addEventListener("change", () => this.#paint_soon());
+    on_theme_change(() => this.#paint_soon());
   }
 
   /** Shows a scene. A scene of another tree shows its whole width, and points at its first organism of the last row. */
@@ -70,7 +72,7 @@ export class FamilyDrawing {
     if (scene?.tree !== this.#scene?.tree) {
       this.#pointed_at = null;
       this.at = scene && {row: scene.tree.rows.length - 1, place: 0};
-      this.#view = {begin: 0, end: scene?.tree.width ?? 1};
+      this.#view = whole_width(scene);
     }
     const before = this.#scene;
     this.#scene = scene;
@@ -81,18 +83,25 @@ export class FamilyDrawing {
   }
 
   zoom(factor: number): void {
-    const scene = this.#scene, spot = this.at && scene?.tree.rows[this.at.row]?.[this.at.place];
-    if (scene && spot) {
-      this.#set_view(zoomed(this.#view, scene.tree.width, spot.x, factor));
+    const spot = this.at && this.#scene?.tree.rows[this.at.row]?.[this.at.place];
+    if (spot) {
+      this.#zoom_at(spot.x, factor);
     }
   }
 
   /** Shows the whole width. */
   fit(): void {
-    this.#set_view({begin: 0, end: this.#scene?.tree.width ?? 1});
+    this.#set_view(whole_width(this.#scene));
   }
 
-  #set_view(view: TreeView): void {
+  /** Zooms so that this position in the tree stays where it is, or at the nearer end if it is not visible. */
+  #zoom_at(unit: number, factor: number): void {
+    const {min, max} = this.#view, whole = whole_width(this.#scene), nearest = Math.min(Math.max(unit, min), max);
+    const from = moved(this.#view, unit - nearest, whole);
+    this.#set_view(zoomed(from, (nearest - min) / (max - min), factor, whole, organisms_min));
+  }
+
+  #set_view(view: Range): void {
     this.#view = view;
     this.#paint_soon();
   }
@@ -191,7 +200,7 @@ export class FamilyDrawing {
         this.element.setPointerCapture(drag.pointer);
       }
       if (drag.moved) {
-        this.#set_view(moved(drag.view, layout.tree.width, -by / layout.each));
+        this.#set_view(moved(drag.view, -by / layout.each, whole_width(this.#scene)));
       }
       return;
     }
@@ -219,9 +228,7 @@ export class FamilyDrawing {
     }
     event.preventDefault();
     const unit = layout.unit_at(event.clientX - this.#base.getBoundingClientRect().left);
-    const notches = Math.min(Math.abs(event.deltaY) / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3), 3);
-    this.#set_view(
-      zoomed(this.#view, layout.tree.width, unit, zoom_of_notch ** (event.deltaY > 0 ? -notches : notches)));
+    this.#zoom_at(unit, zoom_of_notch ** wheel_notches(event));
   }
 
   // ---- keyboard ----
@@ -233,7 +240,7 @@ export class FamilyDrawing {
     if (event.key.startsWith("Arrow") || event.key === "Home" || event.key === "End") {
       const {tree} = this.#scene, at = neighbour(tree, this.at, event.key, event.shiftKey);
       this.at = at;
-      this.#set_view(revealed(this.#view, tree.width, tree.rows[at.row]![at.place]!.x));
+      this.#set_view(revealed(this.#view, tree.rows[at.row]![at.place]!.x, 0.5, whole_width(this.#scene)));
       this.#cursor.style.top = `${this.#layout?.y_of(at.row) ?? 0}px`;
       this.#cursor.scrollIntoView({block: "nearest"});
       this.#actions.read(at);
@@ -269,4 +276,8 @@ export class FamilyDrawing {
         return false;
     }
   }
+}
+
+function whole_width(scene: Scene|null): Range {
+  return {min: 0, max: scene?.tree.width ?? 1};
 }

@@ -16,7 +16,7 @@ import {common_texts} from "../texts/common";
 import {freezer_texts as texts} from "../texts/freezer";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {hint, row} from "../widgets/form";
+import {hint, row, text_field} from "../widgets/form";
 import {accept_drops, open_button} from "../widgets/files";
 import {name_characters_max, name_of_file} from "../world/names";
 import type {Panel, PanelContext} from "../world/panel_context";
@@ -32,14 +32,7 @@ export class FreezerPanel implements Panel {
   readonly #context: PanelContext;
   readonly #freezer = kept_organisms();
   readonly #entry: FreezerEntry;
-  readonly #name = h("input", {
-    class: "field grow",
-    "aria-label": texts.name,
-    maxlength: name_characters_max,
-    placeholder: texts.name_hint,
-    spellcheck: "false",
-    autocomplete: "off"
-  });
+  readonly #name = text_field(texts.name, {maxlength: name_characters_max, placeholder: texts.name_hint});
   readonly #keep_selected: HTMLButtonElement;
   readonly #keep_healthiest: HTMLButtonElement;
   readonly #keep_population: HTMLButtonElement;
@@ -72,7 +65,7 @@ export class FreezerPanel implements Panel {
         row(h("span", {}, texts.as), this.#name, open, field), this.#problem, this.#table, this.#usage,
         this.#entry.element, hint(texts.where(location.host)));
     accept_drops(this.element, (files) => void this.#open(files));
-    this.#freezer.on_change(() => void this.#list());
+    this.#freezer.changes.listen(() => void this.#list());
     void this.#list();
   }
 

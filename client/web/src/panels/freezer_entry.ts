@@ -6,7 +6,7 @@ import {freezer_texts as texts} from "../texts/freezer";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {save_file} from "../widgets/files";
-import {Question, row} from "../widgets/form";
+import {button, Question, row, text_field} from "../widgets/form";
 import {name_characters_max} from "../world/names";
 import type {PanelContext} from "../world/panel_context";
 
@@ -26,17 +26,10 @@ export class FreezerEntry {
   readonly #genes = new FreezerGenes();
   readonly #title = h("h3", {});
   readonly #create: HTMLButtonElement;
-  readonly #download =
-    h("button", {type: "button", class: "button", onclick: () => save(this.#shown!)}, texts.download);
-  readonly #rename = h("button", {type: "button", class: "button", onclick: () => this.#ask_rename()}, texts.rename);
-  readonly #remove = h("button", {type: "button", class: "button", onclick: () => this.#ask_remove()}, texts.remove);
-  readonly #new_name = h("input", {
-    class: "field grow",
-    "aria-label": texts.new_name,
-    maxlength: name_characters_max,
-    spellcheck: "false",
-    autocomplete: "off"
-  });
+  readonly #download = button(texts.download, () => save(this.#shown!));
+  readonly #rename = button(texts.rename, () => this.#ask_rename());
+  readonly #remove = button(texts.remove, () => this.#ask_remove());
+  readonly #new_name = text_field(texts.new_name, {maxlength: name_characters_max});
   readonly #rename_form = new Question(
     {before: [], field: this.#new_name}, texts.do_rename, () => void this.#act(() => this.#do_rename()),
     () => this.#rename);
@@ -87,7 +80,7 @@ export class FreezerEntry {
     }
     const {kept, population} = shown, world = this.#context.world(), chosen = this.#choice.chosen();
     set_allowed(
-      this.#create, this.#context.server.why_not("create_world"),
+      this.#create, this.#context.server.access.why_not("create_world"),
       is_organism(population) ? texts.create_copies_help : texts.create_help);
     this.#placing.refresh(kept.name, kept.gene_names);
     set_text(this.#wrong, typeof chosen === "string" ? `${chosen}.` : "");

@@ -52,7 +52,7 @@ export class FreezerPlacing {
     const why = !world.info         ? common_texts.no_world :
       !server.features.has("place") ? texts.cannot_place :
       world.is_replay               ? texts.replay :
-                                      server.why_not("place", world.shown) ||
+                                      server.access.why_not("place", world.shown) ||
         gene_problem(name, gene_names, world.name, world.gene_names);
     set_allowed(this.#by_clicks, why, texts.place_help);
     set_allowed(this.#scatter, why, texts.scatter_help);

@@ -5,7 +5,7 @@ import {breeding_summary} from "../breeding/caption";
 import {BreedingFeed} from "../breeding/feed";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, set_text} from "../widgets/dom";
-import {button, row} from "../widgets/form";
+import {button, check, row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
 import {BetControls} from "./glass_box_bets";
@@ -61,8 +61,6 @@ export class GlassBoxPanel implements Panel {
     };
     this.#messages = new Messages(context, try_again, (generation) => this.show({generation}));
     this.#hold = new HoldControl(context, () => this.refresh());
-    const check = (input: HTMLInputElement, text: string, help: string): HTMLElement =>
-      h("label", {class: "check", title: help}, input, text);
     this.#body = h("div", {class: "panel"}, this.#steps.element, this.#tabs.element);
     this.element =
       h("div", {
@@ -145,7 +143,7 @@ export class GlassBoxPanel implements Panel {
       return;
     }
     this.#steps.update();
-    this.#tabs.update(world, this.#feed, shown, this.#width.within(280, 560));
+    this.#tabs.update(world, this.#feed, shown, this.#width.within(560));
   }
 }
 

@@ -1,14 +1,13 @@
 // Drawings of the glass box: the wheel, a tournament, fitness by rank, the picks in order, copies by rank, the next
 // generation in a row, and one descendant with its parents. Each function returns a new element.
 import {contender_text} from "../breeding/caption";
-import {type Comparison, pick_columns, rank_columns} from "../breeding/comparison";
+import {type Comparison, divided, pick_columns, rank_columns} from "../breeding/comparison";
 import {
   brings_back,
   gene_blocks,
   type GeneOrigin,
   type Inheritance,
   inheritance_of,
-  mutation_text,
   origin_text,
   other_genes_text
 } from "../breeding/inheritance";
@@ -18,7 +17,7 @@ import {point_at, rank_colour, ring_path, text_on, wheel_arcs} from "../breeding
 import {gene_label} from "../organism/texts";
 import type {Descendant} from "../core/protocol";
 import {css} from "../render/look";
-import {delta_text, gene_text} from "../texts/breeding";
+import {breeding_texts, delta_text, gene_text} from "../texts/breeding";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, svg} from "../widgets/dom";
 import {svg_label, svg_line, svg_rect} from "../widgets/svg";
@@ -183,10 +182,9 @@ function draw_bars(
   image.append(
     svg_label("drawing-title", [0, 10], bars.title),
     svg_label("drawing-quiet", [width, 10], range, {"text-anchor": "end"}));
-  const columns = Math.min(count, Math.floor(width / 2)), each = width / columns, gap = each > 5 ? 1 : 0;
-  for (let i = 0; i < columns; ++i) {
-    const first = Math.floor(i * count / columns), end = Math.floor((i + 1) * count / columns);
-    const ranks = Array.from({length: end - first}, (_, n) => first + n);
+  const columns = divided(count, Math.floor(width / 2)), each = width / columns.length, gap = each > 5 ? 1 : 0;
+  columns.forEach(({first, last}, i) => {
+    const ranks = Array.from({length: last - first + 1}, (_, n) => first + n);
     const mean = ranks.reduce((sum, rank) => sum + values[rank]!, 0) / ranks.length;
     const y = Math.min(y_of(mean), y_of(0)), middle = i * each + (each - gap) / 2;
     const organism = comparison.organisms[first]!;
@@ -195,14 +193,14 @@ function draw_bars(
       svg(
         "title", {},
         ranks.length === 1 ? contender_text(organism, record.contenders[organism]!, complete) :
-                             glass_box_texts.ranks(first, end - 1))));
+                             glass_box_texts.ranks(first, last))));
     if (ranks.some((rank) => comparison.organisms[rank] === bars.current)) {
       image.append(svg(
         "polygon", {class: "pointer", points: `${middle - 6},${y - 12} ${middle + 6},${y - 12} ${middle},${y - 2}`}));
     } else if (ranks.some((rank) => (bars.copies[rank] ?? 0) > 0)) {
       image.append(svg("circle", {class: "picked-dot", cx: middle, cy: y - 5, r: 2.5}));
     }
-  }
+  });
   image.append(svg_line("axis", [0, y_of(0), width, y_of(0)]));
   return image;
 }
@@ -328,15 +326,17 @@ export function draw_descendants(
   return image;
 }
 
+function swatch(kind: string, text: string): HTMLElement {
+  return h("span", {}, h("span", {class: `swatch ${kind}`}), text);
+}
+
 export function descendants_legend(): HTMLElement {
-  const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
   return h(
     "p", {class: "hint glass-legend"}, swatch("elite", glass_box_texts.elite),
     swatch("survivor", glass_box_texts.survivors), swatch("child", glass_box_texts.children));
 }
 
 function parents_legend(alone: boolean): HTMLElement {
-  const swatch = (kind: string, text: string): HTMLElement => h("span", {}, h("span", {class: `swatch ${kind}`}), text);
   return h(
     "p", {class: "hint glass-legend"}, !alone && swatch("first", glass_box_texts.first_parent),
     !alone && swatch("second", glass_box_texts.second_parent), !alone && swatch("blended", glass_box_texts.blended),
@@ -410,11 +410,12 @@ export function draw_family(descendant: Descendant, gene_names: readonly string[
               (change) =>
                 h("div", {
                   class: brings_back(change.kind) ? "gene-change clamped" : "gene-change",
-                  title: glass_box_texts.mutation(delta_text(change.after - change.before), mutation_text(change.kind)),
+                  title: glass_box_texts.mutation(
+                    delta_text(change.after - change.before), breeding_texts.mutation[change.kind]),
                 },
                   h("span", {}, gene_text(change.before)),
                   h("span", {}, glass_box_texts.changed_to(gene_text(change.after))),
-                  h("span", {}, mutation_text(change.kind))))))));
+                  h("span", {}, breeding_texts.mutation[change.kind])))))));
   }
   const final: number[] = descendant.genes ?? inheritance.genes;
   rows.push(row(

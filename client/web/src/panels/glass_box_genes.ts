@@ -1,7 +1,8 @@
 // The tab "Why genes changed" of the glass box: the account of each gene by Price's equation.
-import {account_text, accounts_of, type GeneChangeOfMean, most_changed, reason_text} from "../breeding/account";
+import {accounts_of, type GeneChangeOfMean, most_changed, reason_text} from "../breeding/account";
 import type {BreedingKey} from "../breeding/record";
 import type {GenerationStatistics} from "../core/protocol";
+import {account_texts} from "../texts/breeding_theory";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, svg} from "../widgets/dom";
 import {hint} from "../widgets/form";
@@ -42,7 +43,7 @@ export function gene_parts(generation: number, gene_names: readonly string[], ne
 function draw_account(account: GeneChangeOfMean, most: number|null): HTMLElement {
   const end = most ?? Math.max(1e-12, ...parts.map((part) => Math.abs(account[part])));
   return h(
-    "section", {class: "organism-part account"}, h("p", {}, account_text(account)), hint(reason_text(account)),
+    "section", {class: "organism-part account"}, h("p", {}, account_texts.change(account)), hint(reason_text(account)),
     h("div", {class: "account-bars", "aria-hidden": "true"}, ...parts.flatMap((part) => {
       const value = account[part], width = Math.abs(value) / end * 50;
       return [

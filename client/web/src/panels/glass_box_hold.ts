@@ -30,8 +30,9 @@ export class HoldControl {
 
   /** Sends the command that the hold needs now. */
   update(world: ViewedWorld): void {
-    const may =
-      !world.is_replay && world.server.may("run", world.shown) && world.server.may("run_until_tick", world.shown);
+    const {access} = world.server;
+    const may = !world.is_replay && access.why_not("run", world.shown) === "" &&
+      access.why_not("run_until_tick", world.shown) === "";
     if (!may) {
       this.#holder.release();
     }

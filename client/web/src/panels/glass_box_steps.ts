@@ -2,7 +2,7 @@
 import {speed_max, speed_min, Stepper} from "../breeding/stepper";
 import {glass_box_texts} from "../texts/glass_box";
 import {h, set_text} from "../widgets/dom";
-import {row} from "../widgets/form";
+import {row, symbol_button} from "../widgets/form";
 
 export class StepControls {
   readonly element: HTMLElement;
@@ -40,7 +40,7 @@ export class StepControls {
   constructor(changed: () => void) {
     this.#changed = changed;
     const button = (text: string, label: string, act: () => void): HTMLElement =>
-      h("button", {class: "button glass-move", title: label, "aria-label": label, onclick: () => this.move(act)}, text);
+      symbol_button(text, label, () => this.move(act), "button glass-move");
     const texts = glass_box_texts, stepper = this.stepper;
     this.element =
       h("div", {class: "panel"},

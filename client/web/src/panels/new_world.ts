@@ -169,7 +169,7 @@ class NewWorldDialog {
 
   #suggest(base: string): void {
     if (!this.#name_edited) {
-      this.#name.value = unused_name(base, this.#context.server.world_names);
+      this.#name.value = unused_name(base, this.#context.server.worlds.names);
     }
   }
 
@@ -228,8 +228,8 @@ class NewWorldDialog {
   async #send(runs: boolean): Promise<void> {
     const name = this.#name.value.trim(), seed = this.#seed.value.trim();
     const seed_wrong = seed !== "" && !(/^\d{1,20}$/.test(seed) && BigInt(seed) <= seed_max);
-    const problem = name_problem("name", name) || (seed_wrong ? common_texts.wrong_seed(seed, seed_max) : "");
-    set_attribute(this.#name, "aria-invalid", name_problem("name", name) ? "true" : null);
+    const problem = name_problem(name) || (seed_wrong ? common_texts.wrong_seed(seed, seed_max) : "");
+    set_attribute(this.#name, "aria-invalid", name_problem(name) ? "true" : null);
     set_attribute(this.#seed, "aria-invalid", seed_wrong ? "true" : null);
     set_text(this.#error, capitalised(problem));
     if (problem) {

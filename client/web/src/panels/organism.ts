@@ -84,7 +84,7 @@ export class OrganismPanel implements Panel {
     this.#life.update(world, history);
     this.#origin.update(history);
     this.#offspring.update(history);
-    const drawn = [history, history.info, history.ranges, world.gene_names.length, this.#width.within(280, 560)];
+    const drawn = [history, history.info, history.ranges, world.gene_names.length, this.#width.within(560)];
     // snapshots arrive more often than answers about the organism
     if (drawn.some((part, i) => part !== this.#drawn[i])) {
       this.#drawn = drawn;
@@ -189,7 +189,7 @@ export class OrganismPanel implements Panel {
     const genes = info?.genes ?? [];
     const {first, count} = genes_of(world.feed.gene_groups, "brain", genes.length);
     this.#brain_part.hidden =
-      !brain || !this.#brain.update(brain, genes.slice(first, first + count), this.#width.within(280, 560));
+      !brain || !this.#brain.update(brain, genes.slice(first, first + count), this.#width.within(560));
   }
 
   // ---- actions ----

@@ -2,7 +2,6 @@
 // genes as a list. The weights of its network are in BrainView.
 import {genes_of} from "../organism/genes";
 import type {OrganismHistory, Range} from "../organism/history";
-import {range_text} from "../organism/texts";
 import {gene_label, gene_number} from "../texts/genes";
 import {organism_texts as texts} from "../texts/organism";
 import {h, set_text} from "../widgets/dom";
@@ -78,10 +77,11 @@ class GeneBar {
       range.max > range.min ? Math.min(1, Math.max(0, (of - range.min) / (range.max - range.min))) : 0.5;
     this.#fill.style.width = `${(100 * share(value)).toFixed(1)}%`;
     this.#mean.style.left = `${(100 * share(range.mean)).toFixed(1)}%`;
-    this.element.title = range_text(range);
+    const range_text = texts.gene_range(range.min, range.max, range.mean);
+    this.element.title = range_text;
     this.#bar.setAttribute("aria-valuemin", range.min.toFixed(2));
     this.#bar.setAttribute("aria-valuemax", range.max.toFixed(2));
     this.#bar.setAttribute("aria-valuenow", value.toFixed(2));
-    this.#bar.setAttribute("aria-valuetext", texts.gene_of_range(value, range_text(range)));
+    this.#bar.setAttribute("aria-valuetext", texts.gene_of_range(value, range_text));
   }
 }

@@ -4,7 +4,7 @@ import type {Event, ParameterSet, PlannedChange, SetParameters} from "../core/pr
 import {common_texts} from "../texts/common";
 import {parameters_texts as texts} from "../texts/parameters";
 import {undo_texts} from "../texts/undo";
-import {ParameterEdits, type When, when_text} from "../world/parameter_edits";
+import {type Change, ParameterEdits, type When, when_text} from "../world/parameter_edits";
 import {label_of} from "../world/parameters";
 import type {PanelContext} from "../world/panel_context";
 import {Refusal} from "../world/server";
@@ -67,7 +67,8 @@ export class ParameterExchange {
       this.edits.update_all(this.#set);
       changed = true;
     }
-    const why_not = world.is_replay ? common_texts.replay_cannot_change : server.why_not("set_parameters", world.shown);
+    const why_not = world.is_replay ? common_texts.replay_cannot_change :
+                                      server.access.why_not("set_parameters", world.shown);
     changed ||= why_not !== this.why_not;
     this.why_not = why_not;
     return changed;
@@ -79,9 +80,7 @@ export class ParameterExchange {
     if (event.world !== this.world || event.run_id !== this.#run_id || !parameters_changed || !this.edits.known) {
       return false;
     }
-    if (!this.edits.update_changed(parameters_changed)) {
-      void this.#read();
-    }
+    this.edits.update_changed(parameters_changed); // the world reads the complete set, which does not name the client
     return true;
   }
 
@@ -101,10 +100,11 @@ export class ParameterExchange {
 
   /** Sends the edits, or later if a change is being sent. */
   apply(when: When): void {
-    const fields = this.edits.apply(this.world, when), world = this.#context.world(), transaction = this.#transaction;
+    const fields = this.edits.apply(this.world, when), changes = this.edits.sent;
+    const world = this.#context.world(), transaction = this.#transaction;
     void this.#send(fields).then((answer) => {
       if (answer === "accepted" && when === null && transaction === this.#transaction) {
-        world.undo.add(this.#step(fields!));
+        world.undo.add(this.#step(changes));
       }
     });
   }
@@ -115,37 +115,36 @@ export class ParameterExchange {
   }
 
   /** An applied change, for the undo history of the world. */
-  #step(fields: SetParameters): UndoStep {
-    const names = new Set(fields.parameters?.map(({name}) => name)), transaction = this.#transaction;
-    const labels = this.edits.registry.filter(({name}) => names.has(name)).map(label_of);
+  #step(changes: readonly Change[]): UndoStep {
+    const {edits} = this, labels = changes.map(({parameter}) => label_of(parameter.about));
+    const transaction = this.#transaction;
     const is_followed = (): boolean => transaction === this.#transaction; // `edits` forgets the changes of other worlds
+    let last = changes;
+    /** Resolves with whether a value was changed: others may have changed them all since. */
+    const reverse = async (): Promise<boolean> => {
+      if (edits.busy) {
+        throw new Error(undo_texts.busy);
+      }
+      const fields = edits.reverse(this.world, last), {sent} = edits, answer = await this.#send(fields);
+      if (answer === "refused") {
+        throw new Error(edits.problem);
+      }
+      last = answer === "accepted" ? sent : last;
+      return answer === "accepted";
+    };
     return {
       name: undo_texts.parameters(labels),
       can_undo: is_followed,
       can_redo: is_followed,
-      undo: () => this.#reverse("undo"),
-      redo: () => this.#reverse("redo"),
+      undo: reverse,
+      redo: reverse
     };
-  }
-
-  /** Resolves with whether a value was changed: others may have changed them all since. */
-  async #reverse(verb: "undo"|"redo"): Promise<boolean> {
-    if (this.edits.busy) {
-      throw new Error(undo_texts.busy);
-    }
-    const answer = await this.#send(this.edits.reverse(this.world, verb));
-    if (answer === "refused") {
-      throw new Error(this.edits.problem);
-    }
-    return answer === "accepted";
   }
 
   /** Cancels a planned change. */
   async cancel({id}: PlannedChange): Promise<void> {
     const {world} = this;
-    if (await this.#context.attempt(() => this.#context.server.request("cancel_change", {world, id}))) {
-      await this.#read();
-    }
+    await this.#context.attempt(() => this.#context.server.request("cancel_change", {world, id}));
   }
 
   #forget(): void {
@@ -154,20 +153,6 @@ export class ParameterExchange {
     this.#transaction += 1;
     this.#apply_again = false;
     this.#view.forgotten();
-  }
-
-  /** Requests the complete set. */
-  async #read(): Promise<void> {
-    const {world} = this, transaction = this.#transaction;
-    try {
-      const set = await this.#context.server.request("get_parameters", {world});
-      if (world === this.world && transaction === this.#transaction) {
-        this.edits.update_all(set);
-        this.#view.answered();
-      }
-    } catch {
-      // The session ended: the next one reads the parameters.
-    }
   }
 
   async #check(when: When|string): Promise<void> {
@@ -215,7 +200,7 @@ export class ParameterExchange {
       this.#view.refused();
     }
     if (stale) {
-      void this.#read();
+      this.#context.world().parameters.read();
     }
     this.#view.answered();
     if (this.#apply_again) {

@@ -56,7 +56,7 @@ export class ParametersPanel implements Panel {
             check(this.#at_once, texts.at_once, texts.at_once_help)),
           this.#problem, this.#reason, this.#status),
         this.#planned.element, this.#list.element, this.#list.nothing_found);
-    context.server.on_event((event) => {
+    context.server.events.listen((event) => {
       this.#changed = this.#exchange.take_event(event) || this.#changed;
     });
   }

@@ -11,8 +11,7 @@ import {plot_texts} from "../texts/plot";
 import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {h, set_text} from "../widgets/dom";
 import {accept_drops, save_file} from "../widgets/files";
-import {row} from "../widgets/form";
-
+import {button, row} from "../widgets/form";
 import type {Panel, PanelContext} from "../world/panel_context";
 import {QuantityTabs, IslandAndMeanChoice} from "./plots_choices";
 import {CompareChoice} from "./plots_compare";
@@ -51,8 +50,6 @@ export class PlotsPanel implements Panel {
     this.#comparison = new Comparison(context.server, () => this.refresh());
     this.#compare = new CompareChoice(context.server, this.#comparison);
     this.#content.append(this.#plot.element, this.#histogram.element);
-    const button = (name: string, action: () => void, title: string): HTMLElement =>
-      h("button", {class: "button", type: "button", title, onclick: action}, name);
     const fit = () => {
       this.#plot.fit();
       this.#histogram.fit();
@@ -60,8 +57,9 @@ export class PlotsPanel implements Panel {
     this.element =
       h("div", {class: "panel plots"}, this.#compare.element, this.#scope.element, this.#tabs.element, this.#content,
         row(
-          button(texts.fit, fit, texts.fit_help), button(texts.save_csv, () => this.#save_csv(), texts.save_csv_help),
-          button(texts.save_png, () => void this.#save_png(), texts.save_png_help(image_width, image_height)),
+          button(texts.fit, fit, {title: texts.fit_help}),
+          button(texts.save_csv, () => this.#save_csv(), {title: texts.save_csv_help}),
+          button(texts.save_png, () => void this.#save_png(), {title: texts.save_png_help(image_width, image_height)}),
           this.#known));
     accept_drops(this.element, (files) => this.#compare.take(files));
     new IntersectionObserver((entries) => {
@@ -112,7 +110,7 @@ export class PlotsPanel implements Panel {
   // ---- data ----
 
   #run_id(): string {
-    return this.#context.server.world(this.#context.world().name)?.run_id ?? "";
+    return this.#context.server.worlds.find(this.#context.world().name)?.run_id ?? "";
   }
 
   #need_population(): void {

@@ -44,7 +44,8 @@ export class CompareChoice {
 
   /** world: the name of the shown world. */
   update(world: string): void {
-    const names = this.#server.worlds.filter((one) => !one.replay && one.name !== world).map((one) => String(one.name));
+    const others = this.#server.worlds.all.filter((one) => !one.replay && one.name !== world);
+    const names = others.map((one) => one.name);
     const {file} = this.#comparison, compared = this.#comparison.world;
     if (compared !== "" && !names.includes(compared)) { // it was deleted, or is shown itself now
       this.#comparison.choose_world("");

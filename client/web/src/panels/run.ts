@@ -75,13 +75,13 @@ export class RunPanel implements Panel {
     const generation = world.snapshot?.generation ?? null;
     set_text(this.#where, info ? texts.where(generation, world.feed.tick, info.seed ?? 0) : "");
     const why_run = !info ? common_texts.no_world :
-                            server.why_not("run", world.shown) || (world.control.is_over ? texts.has_ended : "");
+                            server.access.why_not("run", world.shown) || (world.control.is_over ? texts.has_ended : "");
     set_allowed(this.#one, why_run, texts.one_tick_help);
     set_allowed(this.#step, why_run, texts.step_help);
     set_allowed(this.#run, why_run, texts.run_help);
     const why_reset = !info ? common_texts.no_world :
       world.is_replay       ? common_texts.replay_cannot_change :
-                              server.why_not("reset_world", world.shown);
+                              server.access.why_not("reset_world", world.shown);
     set_allowed(this.#reset, why_reset);
     this.#seed.disabled = why_reset !== "";
     if (why_reset) {

@@ -33,9 +33,9 @@ export class SecondWorld {
 
   open(): void {
     const world = this.#context.world(), {server} = world;
-    const others = server.world_names.filter((name) => name !== world.name);
+    const others = server.worlds.names.filter((name) => name !== world.name);
     const choices: Choice[] = others.map((name) => {
-      const info = server.world(name);
+      const info = server.worlds.find(name);
       const hint =
         info === null ? texts.damaged : texts.world_hint(info.generation, state_word(info.state, info.storage));
       return {label: name, hint, act: () => void this.#context.show_second(name)};
@@ -48,7 +48,7 @@ export class SecondWorld {
     const fork: Choice = {
       label: texts.fork(world.name),
       hint: texts.fork_hint,
-      why_not: server.why_not("fork_world"),
+      why_not: server.access.why_not("fork_world"),
       act: () => void this.#context.fork(),
     };
     set_text(this.#wrong, "");

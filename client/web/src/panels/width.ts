@@ -1,5 +1,7 @@
 // Width: the width of an element in CSS pixels, without a layout at each reading.
 
+const px_min = 280;
+
 export class Width {
   #px = 0;
 
@@ -14,8 +16,8 @@ export class Width {
     }).observe(element);
   }
 
-  /** The width within these limits; the lower one until the width is known. */
-  within(least: number, most: number): number {
-    return Math.min(Math.max(this.#px, least), most);
+  /** The width, from px_min to `most`; px_min until the width is known. */
+  within(most: number): number {
+    return Math.min(Math.max(this.#px, px_min), most);
   }
 }

@@ -58,14 +58,14 @@ export class WorldsPanel implements Panel {
   refresh(): void {
     const {server} = this.#context, world = this.#context.world();
     update_rows(this.#worlds, this.#world_rows(), 1);
-    const why_create = server.why_not("create_world");
+    const why_create = server.access.why_not("create_world");
     set_allowed(this.#create, why_create, texts.create_help);
-    set_allowed(this.#fork, world.info ? server.why_not("fork_world") : common_texts.no_world, texts.fork_help);
+    set_allowed(this.#fork, world.info ? server.access.why_not("fork_world") : common_texts.no_world, texts.fork_help);
     set_allowed(
       this.#remove,
-      !world.info && !server.damage_of(world.name) ? common_texts.no_world :
+      !world.info && !server.worlds.damage_of(world.name) ? common_texts.no_world :
         world.is_replay                            ? texts.return_first :
-                                                     server.why_not("delete_world"));
+                                                     server.access.why_not("delete_world"));
     set_text(this.#why, why_create);
     if (why_create) {
       this.#confirm.element.hidden = this.#fork_form.element.hidden = true;
@@ -86,7 +86,7 @@ export class WorldsPanel implements Panel {
     const {server} = this.#context, world = this.#context.world();
     const row = (name: string, cells: string[]): TableRow =>
       ({name, chosen: name === world.name, act: () => this.#context.world().show(name), cells});
-    const listed = server.worlds.filter((one) => !one.replay || one.name === world.name);
+    const listed = server.worlds.all.filter((one) => !one.replay || one.name === world.name);
     return [
       ...listed.map((info) => {
         const live = info.name === world.shown && world.feed.reading?.info;
@@ -97,7 +97,7 @@ export class WorldsPanel implements Panel {
           info.slowed ? texts.slower(speed_text(info.speed)) : speed_text(info.speed)
         ]);
       }),
-      ...server.damaged.map(({name}) => row(name, [texts.damaged, "", "", ""]))
+      ...server.worlds.damaged.map(({name}) => row(name, [texts.damaged, "", "", ""]))
     ];
   }
 
@@ -119,22 +119,22 @@ export class WorldsPanel implements Panel {
   }
 
   #ask_fork(): void {
-    const world = this.#context.world(), why = this.#context.server.why_not("fork_world");
+    const world = this.#context.world(), why = this.#context.server.access.why_not("fork_world");
     if (why || !world.snapshot) {
       this.#context.notify(
         why || common_texts.no_world,
-        () => why === "" ? !this.#context.world().snapshot : this.#context.server.why_not("fork_world") === why);
+        () => why === "" ? !this.#context.world().snapshot : this.#context.server.access.why_not("fork_world") === why);
       return;
     }
     set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.feed.tick));
     set_text(this.#fork_error, "");
-    this.#fork_name.value = unused_name(world.name, this.#context.server.world_names);
+    this.#fork_name.value = unused_name(world.name, this.#context.server.worlds.names);
     this.#confirm.element.hidden = true;
     this.#fork_form.open();
   }
 
   async #do_fork(): Promise<void> {
-    const name = this.#fork_name.value.trim(), problem = name_problem("name", name);
+    const name = this.#fork_name.value.trim(), problem = name_problem(name);
     set_text(this.#fork_error, problem);
     if (problem) {
       return;

@@ -53,13 +53,12 @@ export class FitnessCurve {
     this.#changes = world.history.changes;
     this.#change_count = world.history.changes.length;
     const x = this.#table.column(null, "generation");
-    const line = (name: string, column: Column, colour: SeriesColour, dash: number[]): Series => {
+    const line = (name: string, column: Column, colour: SeriesColour): Series => {
       const raw = this.#table.column(null, column);
       return {
         kind: "line",
         name,
         colour,
-        dash,
         x,
         y: running_mean(raw, generations_in_mean),
         raw,
@@ -70,7 +69,7 @@ export class FitnessCurve {
     this.#plot.set_content({
       title: known ? plot_texts.curve_title(x[x.length - 1]!) : plot_texts.no_curve,
       series: known ?
-        [line(plot_texts.best, "fitness_best", "vermilion", []), line(plot_texts.mean, "fitness_mean", "blue", [])] :
+        [line(plot_texts.best, "fitness_best", "vermilion"), line(plot_texts.mean, "fitness_mean", "blue")] :
         [],
       x_label: plot_texts.generation,
       y_label: plot_texts.fitness,

@@ -76,13 +76,6 @@ export class HistoryTable {
     return -1;
   }
 
-  /** Removes the first generations if there are more than `most`, rarely, because this takes time. */
-  limit(most: number): void {
-    if (this.#rows.length > most * 1.1) {
-      this.#drop_generations(this.#rows.length - most);
-    }
-  }
-
   /** Removes the first generations, which contain `count` messages. */
   #drop(count: number): void {
     let generations = 0;
@@ -90,34 +83,22 @@ export class HistoryTable {
       left -= this.#rows[generations]!.filter((one) => one !== undefined).length;
     }
     if (generations > 0) {
-      this.#drop_generations(generations);
+      this.#rows.splice(0, generations);
+      this.#columns.forEach((column) => column.splice(0, generations));
+      ++this.revision;
     }
   }
 
-  #drop_generations(count: number): void {
-    this.#rows.splice(0, count);
-    this.#columns.forEach((column) => column.splice(0, count));
-    ++this.revision;
-  }
-
-  /** Adds statistics, ordered by generation. Statistics of a generation that is known replace it; earlier ones are
-   *  inserted. */
+  /** Adds statistics after those of the table, ordered by generation. */
   add(statistics: readonly GenerationStatistics[]): void {
     for (const one of statistics) {
-      const generation = one.generation ?? 0, island = one.island ?? 0;
-      let place = this.#rows.length;
-      while (place > 0 && this.#generation_at(place - 1) > generation) {
-        --place;
+      const island = one.island ?? 0;
+      if (this.#rows.length === 0 || this.last_generation !== (one.generation ?? 0)) {
+        this.#rows.push([]);
       }
-      if (place > 0 && this.#generation_at(place - 1) === generation) {
-        this.#rows[place - 1]![island] = one;
-        this.#shorten(place - 1);
-      } else {
-        const row: GenerationStatistics[] = [];
-        row[island] = one;
-        this.#rows.splice(place, 0, row);
-        this.#shorten(place);
-      }
+      const last = this.#rows.length - 1;
+      this.#rows[last]![island] = one;
+      this.#columns.forEach((column) => column.splice(last)); // it may lack the other islands of this generation
       this.island_count = Math.max(this.island_count, island + 1);
       this.gene_count = Math.max(this.gene_count, one.genes?.length ?? 0);
     }
@@ -145,13 +126,6 @@ export class HistoryTable {
 
   #generation_at(index: number): number {
     return this.#rows[index]!.find((one) => one !== undefined)?.generation ?? 0;
-  }
-
-  /** Forgets the numbers of the columns from this row on. */
-  #shorten(count: number): void {
-    this.#columns.forEach((column) => {
-      column.length = Math.min(column.length, count);
-    });
   }
 }
 

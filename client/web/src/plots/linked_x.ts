@@ -1,6 +1,6 @@
 // LinkedX: the visible part of the x axis. Plots that share it show the same part.
-import {joined, moved, zoomed} from "./plot_layout";
-import type {Range} from "./plot_layout";
+import {moved, type Range, zoomed} from "../widgets/visible_range";
+import {joined} from "./plot_layout";
 import type {Series} from "./plot_content";
 
 const units_min = 4; // least visible width

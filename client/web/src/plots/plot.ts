@@ -13,10 +13,11 @@ import type {LinkedPlot} from "./linked_x";
 import type {PlotContent, PlotView} from "./plot_content";
 import {PlotCursor} from "./plot_cursor";
 import {PlotInput} from "./plot_input";
-import type {Range} from "./plot_layout";
+import type {Range} from "../widgets/visible_range";
 import {paint_legend, PlotLegend} from "./plot_legend";
 import {paint_plot} from "./plot_painter";
-import {on_theme_change, theme_of} from "./plot_theme";
+import {theme_of} from "./plot_theme";
+import {on_theme_change} from "../widgets/theme";
 
 const image_margin = 14; // pixels
 

@@ -1,7 +1,7 @@
 // plot_content: what a plot shows, as data.
 import type {Mark, Numbers} from "./plot_layout";
 
-/** The names of colours. Their values are in plot_theme. */
+/** The names of colours. app.css defines their values. */
 export type SeriesColour = "orange"|"sky"|"green"|"blue"|"vermilion"|"purple"|"grey";
 
 export interface Series {

@@ -1,6 +1,7 @@
 // plot_frame: which numbers a drawn plot shows, and where. Computes it from the content; draws nothing.
 import {groups_of, joined, mean_of, nearest, range_of, tick_label, ticks_in, with_room} from "./plot_layout";
-import type {Box, Range} from "./plot_layout";
+import type {Box} from "./plot_layout";
+import type {Range} from "../widgets/visible_range";
 import type {PlotView, Series} from "./plot_content";
 
 export interface Frame {

@@ -3,9 +3,11 @@ import {width_of_area, x_at, x_near} from "./plot_frame";
 import type {Frame} from "./plot_frame";
 import type {LinkedX} from "./linked_x";
 import {nearest} from "./plot_layout";
-import type {Numbers, Range} from "./plot_layout";
+import type {Numbers} from "./plot_layout";
+import type {Range} from "../widgets/visible_range";
 import type {PlotView} from "./plot_content";
 import type {PlotCursor} from "./plot_cursor";
+import {wheel_notches} from "../widgets/wheel";
 
 const zoom_of_one_notch = 1.25;
 const drag_pixels = 5; // a pointer that moves less is a click
@@ -204,14 +206,13 @@ export class PlotInput {
 
   #wheel(event: WheelEvent): void {
     const frame = this.#target.frame(), {link} = this.#target;
-    const zooms_out = event.deltaY > 0;
-    if (frame === null || !this.#target.view().axes || event.deltaY === 0 || (zooms_out && !link.is_zoomed)) {
+    const notches = wheel_notches(event);
+    if (frame === null || !this.#target.view().axes || notches === 0 || (notches < 0 && !link.is_zoomed)) {
       return; // the page scrolls
     }
     event.preventDefault();
     const share = (this.#place_of(event).x - frame.area.left) / width_of_area(frame);
-    const notches = Math.min(Math.abs(event.deltaY) / (event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? 100 : 3), 3);
-    link.zoom(frame.x, Math.min(Math.max(share, 0), 1), Math.pow(zoom_of_one_notch, zooms_out ? -notches : notches));
+    link.zoom(frame.x, Math.min(Math.max(share, 0), 1), zoom_of_one_notch ** notches);
   }
 
   // ---- keys ----

@@ -1,16 +1,12 @@
-// plot_layout: ticks, zoomed ranges, running means, the points with which a long series is drawn, and groups of marks.
+// plot_layout: ticks, ranges, running means, the points with which a long series is drawn, and groups of marks.
 // Pure functions.
 import {nice_step, with_separators} from "../texts/numbers";
+import type {Range} from "../widgets/visible_range";
 
 export type Numbers = ArrayLike<number>;
 
 /** Dashes of the compared history. */
 export const compare_dash: readonly number[] = [6, 4];
-
-export interface Range {
-  min: number;
-  max: number;
-}
 
 /** Returns the smallest range that contains the finite numbers of indices begin to end - 1; null if there is none. */
 export function range_of(numbers: Numbers, begin = 0, end = numbers.length): Range|null {
@@ -67,23 +63,6 @@ export function tick_label(tick: number, step: number): string {
   }
   const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
   return with_separators(tick.toFixed(Math.min(decimals, 12)));
-}
-
-/** Shifts the range by `by`, limited to `whole`. */
-export function moved(shown: Range, by: number, whole: Range): Range {
-  const least = whole.min - shown.min;
-  const shift = Math.min(Math.max(by, least), Math.max(whole.max - shown.max, least));
-  return {min: shown.min + shift, max: shown.max + shift};
-}
-
-/** Zooms a range; factor > 1 shows a smaller part. The point at `share` of the range keeps its place. The result is
- *  inside `whole`. */
-export function zoomed(shown: Range, share: number, factor: number, whole: Range, width_min: number): Range {
-  const full = whole.max - whole.min, now = shown.max - shown.min;
-  const at = shown.min + share * now;
-  const width = Math.min(Math.max(now / factor, Math.min(width_min, full)), full);
-  const begin = at - share * width;
-  return moved({min: begin, max: begin + width}, 0, whole);
 }
 
 /** Returns the index of the first number that is >= `at`, or > `at` if `after`. `x` rises. */

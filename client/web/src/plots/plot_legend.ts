@@ -7,7 +7,7 @@ import {compare_dash} from "./plot_layout";
 import type {Box} from "./plot_layout";
 import {listed_series, thickness_default} from "./plot_content";
 import type {PlotContent, PlotView, Series, SeriesColour} from "./plot_content";
-import {band_sample_alpha, series_colours} from "./plot_theme";
+import {band_sample_alpha} from "./plot_theme";
 import type {PlotTheme} from "./plot_theme";
 
 export class PlotLegend {
@@ -104,7 +104,7 @@ export function swatch_of(series: Series): SVGElement {
 
 function swatch(colour: SeriesColour, kind: Series["kind"], dash: readonly number[], thickness: number): SVGElement {
   const sample = svg("svg", {class: "plot-swatch", width: 18, height: 10, "aria-hidden": "true"});
-  sample.style.color = `var(--series-${colour}, ${series_colours[colour]})`;
+  sample.style.color = `var(--series-${colour})`;
   sample.append(
     kind === "line" ?
       svg("line", {

@@ -4,7 +4,8 @@ import type {Frame} from "./plot_frame";
 import {thickness_default} from "./plot_content";
 import type {PlotView, Series} from "./plot_content";
 import {line_of, mark_lines, range_of, tick_label, ticks_in} from "./plot_layout";
-import type {Box, Numbers, Range} from "./plot_layout";
+import type {Box, Numbers} from "./plot_layout";
+import type {Range} from "../widgets/visible_range";
 import {band_alpha} from "./plot_theme";
 import type {PlotTheme} from "./plot_theme";
 

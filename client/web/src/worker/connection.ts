@@ -4,7 +4,8 @@
 //                core then subscribes again and repeats the unanswered requests.
 // Silence        A server that sends nothing for silence_ms gets a query, which a living server answers. A server that
 //                sends nothing for silence_max_ms has disappeared without closing the connection.
-import {ClientCore, type CoreEvent} from "../core/client_core";
+import {ClientCore} from "../core/client_core";
+import type {CoreEvent} from "../core/core_session";
 import type {ConnectionState} from "../core/messages";
 import {worker_texts} from "../texts/worker";
 import type {Timings} from "./timings";
@@ -50,7 +51,7 @@ export class Connection {
     this.#socket = null;
     this.#url = url;
     this.#backoff_ms = backoff_min_ms;
-    return (this.core = new ClientCore(descriptor, {client_name, client_version: "", token, server: this.#host}));
+    return (this.core = new ClientCore(descriptor, {client_name, token, server: this.#host}));
   }
 
   open(): void {
@@ -143,7 +144,7 @@ export class Connection {
       this.lose(worker_texts.silent(this.#host, Math.round(silent_ms / 1000)), "");
     } else if (!this.#has_queried) {
       this.#has_queried = true;
-      this.core.request({list_worlds: {}}, true);
+      this.core.requests.add({list_worlds: {}}, true);
       this.flush();
     }
   }

@@ -3,7 +3,7 @@
 //
 // Views   Larger islands are streamed in tiles of the visible region, smaller ones whole. While one island is streamed
 //         in part, a second subscription sends densities of the whole island once a second, for the minimap.
-import type {Subscription} from "../core/client_core";
+import type {Subscription} from "../core/core_session";
 import type {Detail, View} from "../core/protocol";
 import type {Snapshot} from "../core/snapshot";
 import type {Renderer} from "../render/renderer";
@@ -57,7 +57,7 @@ export class Feed {
     const {world, island, rate_hz} = this.watched, all = this.islands > 0, now_ms = performance.now();
     this.#detail = "DETAIL_UNSPECIFIED";
     this.#view_ms = now_ms;
-    this.subscription = core.subscribe({
+    this.subscription = core.subscriptions.subscribe({
       subscribe_snapshots: {
         world,
         ...(all ? {} : {island}),
@@ -69,7 +69,7 @@ export class Feed {
       }
     });
     if (this.#has_view && !all) {
-      this.overview = core.subscribe(
+      this.overview = core.subscriptions.subscribe(
         {subscribe_snapshots: {world, island, rate_hz: 1, codec: "CODEC_DELTA", view: {detail: "DETAIL_DENSITY"}}});
     }
     this.#connection.flush();
@@ -78,7 +78,7 @@ export class Feed {
   stop(): void {
     for (const subscription of [this.subscription, this.overview]) {
       if (subscription) {
-        this.#connection.core?.unsubscribe(subscription);
+        this.#connection.core?.subscriptions.unsubscribe(subscription);
       }
     }
     this.#connection.flush();
@@ -106,7 +106,7 @@ export class Feed {
       const view = this.#wanted(renderer, now_ms);
       if (view) {
         this.#view_ms = now_ms;
-        this.#connection.core?.set_view(this.subscription, {...view, bytes_per_s_max});
+        this.#connection.core?.subscriptions.set_view(this.subscription, {...view, bytes_per_s_max});
       }
     }
   }

@@ -1,6 +1,6 @@
 // WorkerPane: one pane of the page in the worker: what it watches, what its canvas shows, and what it reports to the
 // page.
-import type {Subscription} from "../core/client_core";
+import type {Subscription} from "../core/core_session";
 import {type Camera, type FromWorker, type Look, none_left, type ToWorker} from "../core/messages";
 import type {Snapshot} from "../core/snapshot";
 import {Renderer} from "../render/renderer";

@@ -1,7 +1,23 @@
-// Changes: a list of listeners, called at most once per animation frame, or once per microtask.
+// Listeners: a list of functions that are called with each message. Changes: the same for changes, called at most once
+// per animation frame, or once per microtask.
 
-export class Changes {
-  #listeners = new Set<() => void>();
+export class Listeners<Message = void> {
+  #listeners = new Set<(message: Message) => void>();
+
+  /** Returns a function that ends it. */
+  listen(listener: (message: Message) => void): () => void {
+    this.#listeners.add(listener);
+    return () => this.#listeners.delete(listener);
+  }
+
+  call(message: Message): void {
+    for (const listener of [...this.#listeners]) {
+      listener(message);
+    }
+  }
+}
+
+export class Changes extends Listeners {
   #scheduled = false;
 
   /** per_frame: listeners wait for the next animation frame; a hidden page has none, so they then wait until it is
@@ -9,12 +25,8 @@ export class Changes {
   readonly #per_frame: boolean;
 
   constructor(per_frame: boolean) {
+    super();
     this.#per_frame = per_frame;
-  }
-
-  listen(listener: () => void): () => void {
-    this.#listeners.add(listener);
-    return () => this.#listeners.delete(listener);
   }
 
   notify(): void {
@@ -24,9 +36,7 @@ export class Changes {
     this.#scheduled = true;
     const call = (): void => {
       this.#scheduled = false;
-      for (const listener of [...this.#listeners]) {
-        listener();
-      }
+      this.call();
     };
     if (this.#per_frame) {
       requestAnimationFrame(call);

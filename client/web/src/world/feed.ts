@@ -4,8 +4,9 @@ import type {GeneGroup} from "../core/protocol";
 import type {SnapshotInfo} from "../core/snapshot";
 import {default_look} from "../render/look";
 
-import type {Changes} from "./changes";
-import type {KnownWorld, Server} from "./server";
+import {type Changes, Listeners} from "./changes";
+import type {Server} from "./server";
+import type {KnownWorld} from "./worlds";
 import {of_browser} from "./storage";
 
 const rate_default_hz = 30; // snapshots per second
@@ -23,7 +24,7 @@ export class SnapshotFeed {
   look: Look = stored_look();
   problem = ""; // why nothing is drawn: the server refused the subscription or the replay
   rate_hz = rate_default_hz; // the greatest number of snapshots per second
-  #listeners = new Set<(snapshot: SnapshotInfo) => void>();
+  readonly taken = new Listeners<SnapshotInfo>(); // called after a snapshot and what belongs to it were taken
   readonly #changes: Changes;
 
   constructor(readonly server: Server, readonly pane: number, changes: Changes) {
@@ -35,7 +36,7 @@ export class SnapshotFeed {
   }
 
   get info(): KnownWorld|null {
-    return this.server.world(this.world);
+    return this.server.worlds.find(this.world);
   }
 
   get gene_names(): string[] {
@@ -106,13 +107,6 @@ export class SnapshotFeed {
     this.problem = "";
   }
 
-  /** Calls the listeners after the snapshot was taken. */
-  announce(snapshot: SnapshotInfo): void {
-    for (const listener of [...this.#listeners]) {
-      listener(snapshot);
-    }
-  }
-
   /** Resolves when a snapshot of the shown world is drawn, or after drawn_wait_ms.
    *
    *  tick  of the snapshot, unless the world runs; null: any */
@@ -120,7 +114,7 @@ export class SnapshotFeed {
     return new Promise((resolve) => {
       const end = (): void => {
         clearTimeout(timer);
-        this.#listeners.delete(listener);
+        end_listening();
         resolve();
       };
       const listener = (snapshot: SnapshotInfo): void => {
@@ -129,8 +123,7 @@ export class SnapshotFeed {
           end();
         }
       };
-      const timer = setTimeout(end, drawn_wait_ms);
-      this.#listeners.add(listener);
+      const timer = setTimeout(end, drawn_wait_ms), end_listening = this.taken.listen(listener);
       if (this.snapshot) {
         listener(this.snapshot);
       }

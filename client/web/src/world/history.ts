@@ -20,6 +20,7 @@ export class WorldHistory {
   generations: EndedGeneration[] = [];
   changes: AppliedChange[] = []; // oldest first
   is_complete = false;
+  problem = ""; // why the last reading failed; empty if it has not
   #world = "";
   #run_id = ""; // of the run; empty: not known
   #number = 0; // counts the readings
@@ -36,21 +37,21 @@ export class WorldHistory {
 
   /** Whether the world has begun another run since its history was read. */
   get is_of_earlier_run(): boolean {
-    const run_id = this.#server.world(this.#world)?.run_id ?? "";
+    const run_id = this.#server.worlds.find(this.#world)?.run_id ?? "";
     return run_id !== "" && this.#run_id !== "" && run_id !== this.#run_id;
   }
 
   /** The number of generations whose statistics are kept: as many as the server keeps, but fewer in worlds of many
    *  genes or islands. */
   get #generations_kept(): number {
-    const world = this.#server.world(this.#world), genes = Math.max(1, world?.gene_names?.length ?? 1),
+    const world = this.#server.worlds.find(this.#world), genes = Math.max(1, world?.gene_names?.length ?? 1),
           islands = Math.max(1, world?.island_count ?? 1);
-    return Math.min(
-      this.#server.limits.history_generations_kept ?? Infinity, Math.ceil(gene_statistics_max / (genes * islands)));
+    const kept_by_server = this.#server.state.welcome?.limits?.history_generations_kept ?? Infinity;
+    return Math.min(kept_by_server, Math.ceil(gene_statistics_max / (genes * islands)));
   }
 
   get #generation(): number {
-    return this.#server.world(this.#world)?.generation ?? 1;
+    return this.#server.worlds.find(this.#world)?.generation ?? 1;
   }
 
   get #last(): number {
@@ -95,7 +96,7 @@ export class WorldHistory {
   async read(world: string, same_run: boolean): Promise<void> {
     const number = ++this.#number;
     this.#world = world;
-    this.#run_id = this.#server.world(world)?.run_id ?? "";
+    this.#run_id = this.#server.worlds.find(world)?.run_id ?? "";
     if (!same_run) {
       this.forget();
     }
@@ -110,8 +111,10 @@ export class WorldHistory {
         [...read.generations, ...this.generations.filter((one) => one.generation > last)]; // ended while it was read
       this.changes = read.changes;
       this.is_complete = true;
-    } catch {
+      this.problem = "";
+    } catch (error) {
       // The session ended, or the world was deleted: the next session or world reads its history.
+      this.problem = number === this.#number ? (error as Error).message : this.problem;
     }
     this.#on_change.notify();
   }
@@ -157,6 +160,7 @@ export class WorldHistory {
         ...this.generations.filter((one) => one.generation <= after), ...read.generations,
         ...this.generations.filter((one) => one.generation > last)
       ];
+      this.problem = "";
       void this.read_changes();
       this.#missed_wait_ms = Math.max(missed_wait_min_ms, missed_wait_factor * (performance.now() - begun));
     } catch {

@@ -5,8 +5,8 @@ import {name_texts} from "../texts/names";
 export const name_characters_max = 64;
 
 /** What is wrong with a name, as a sentence; empty if nothing is. */
-export function name_problem(field: string, name: string): string {
-  return /^[A-Za-z0-9_-]{1,64}$/.test(name) ? "" : name_texts.wrong(field, name, name_characters_max);
+export function name_problem(name: string): string {
+  return /^[A-Za-z0-9_-]{1,64}$/.test(name) ? "" : name_texts.wrong("name", name, name_characters_max);
 }
 
 /** `base`, or `base` with the first number that makes it unused: "default-2". */

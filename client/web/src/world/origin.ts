@@ -15,7 +15,7 @@ export function origin_run_of(error: unknown): string {
 
 /** Name of the live world with this run; empty: the server has none. */
 export function world_with_run(server: Server, run_id: string): string {
-  return server.worlds.find((world) => !world.replay && world.run_id === run_id)?.name ?? "";
+  return server.worlds.all.find((world) => !world.replay && world.run_id === run_id)?.name ?? "";
 }
 
 /** A sentence about a generation that bred before a fork began. world: of its origin; empty: the server has none. */

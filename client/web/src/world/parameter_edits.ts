@@ -1,4 +1,4 @@
-// ParameterEdits: the parameters of a world, the edits that have not been sent, and transactions with undo and redo.
+// ParameterEdits: the parameters of a world, the edits that have not been sent, and transactions.
 // Pure: no DOM.
 //
 // All parameters come from the server's registry, so a parameter that is added to the server appears here. Edits are
@@ -13,20 +13,12 @@ import {actor_text} from "../texts/users";
 
 import {same, value_text} from "./parameter_values";
 
-const transactions_kept = 100;
+import type {Refusal, Violation} from "./server";
+
 const field_prefix = "set_parameters.", revision_field = "expected_revision";
 
-export interface Violation {
-  field: string;
-  allowed: string;
-  got: string;
-}
-
-/** Why the server refused a request. The class Refusal of the page has these members. */
-export interface RefusalFacts {
-  message: string;
-  violations: Violation[];
-}
+/** Why the server refused a request. */
+type RefusalFacts = Pick<Refusal, "message"|"violations">;
 
 /** When a change is made: at once, before the first tick of a generation, or right after a tick of the run. */
 export type When = {
@@ -60,15 +52,10 @@ export class EditedParameter {
   }
 }
 
-interface Change {
+export interface Change {
   parameter: EditedParameter;
   before: ParameterValue;
   after: ParameterValue;
-}
-type Verb = "undo"|"redo";
-interface Transaction {
-  kind: "apply"|"plan"|Verb;
-  changes: Change[];
 }
 
 export class ParameterEdits {
@@ -81,8 +68,7 @@ export class ParameterEdits {
   planned: PlannedChange[] = [];
   schedule: ScheduledValue[] = [];
   #index = new Map<string, number>();
-  #sent: Transaction|null = null;
-  #reversible: {[verb in Verb]: Change[][]} = {undo: [], redo: []}; // newest last
+  #sent: {changes: readonly Change[]; is_plan: boolean}|null = null;
   #edit_number = 0; // counts the changes of edits
 
   // ---- what the server reports ----
@@ -101,7 +87,6 @@ export class ParameterEdits {
     this.planned = [];
     this.schedule = [];
     this.#sent = null;
-    this.#reversible = {undo: [], redo: []};
     this.problem = "";
     this.#edit_number += 1;
   }
@@ -120,19 +105,16 @@ export class ParameterEdits {
     this.revision = revision;
   }
 
-  /** Stores a ParametersChanged event. Returns false if an earlier change was missed; the caller then requests the
-   *  complete set. */
-  update_changed(changed: ParametersChanged): boolean {
+  /** Stores a ParametersChanged event unless the known set already contains this change. */
+  update_changed(changed: ParametersChanged): void {
     const revision = changed.revision ?? 0;
     if (revision <= this.revision) {
-      return true; // the known set already contains this change
+      return;
     }
     for (const state of changed.changed ?? []) {
       this.#take(state, actor_text(changed.by));
     }
-    const is_next = revision === this.revision + 1;
     this.revision = revision;
-    return is_next;
   }
 
   #take(reported: ParameterState, client?: string): void {
@@ -207,21 +189,20 @@ export class ParameterEdits {
    *  pending. */
   apply(world: string, when: When = null): SetParameters|null {
     const changes = this.#edits();
-    return this.busy || changes.length === 0 ? null :
-                                               this.#send(world, when === null ? "apply" : "plan", changes, when);
+    return this.busy || changes.length === 0 ? null : this.#send(world, changes, when);
   }
 
-  /** Restores the values before the last transaction that was not undone, or repeats the one that was undone last,
-   *  except values that other clients have changed since; null if nothing is left. */
-  reverse(world: string, verb: Verb): SetParameters|null {
-    const from = this.#reversible[verb];
-    while (!this.busy && from.length > 0) {
-      const changes = reversed(from.pop()!.filter(({parameter, after}) => same(parameter.requested, after)));
-      if (changes.length > 0) {
-        return this.#send(world, verb, changes, null);
-      } // other clients have changed all these values since
-    }
-    return null;
+  /** Restores the values before these changes, except values that other clients have changed since; null if none is
+   *  left or a transaction is pending. */
+  reverse(world: string, changes: readonly Change[]): SetParameters|null {
+    const back = changes.filter(({parameter, after}) => same(parameter.requested, after))
+                   .map(({parameter, before, after}) => ({parameter, before: after, after: before}));
+    return this.busy || back.length === 0 ? null : this.#send(world, back, null);
+  }
+
+  /** The changes of the pending transaction. */
+  get sent(): readonly Change[] {
+    return this.#sent?.changes ?? [];
   }
 
   /** Takes the answer to the pending transaction: the new ParameterSet or null, or the refusal, or that no answer
@@ -234,11 +215,16 @@ export class ParameterEdits {
     this.#sent = null;
     this.#forget_refusal();
     if ("set" in answer) {
-      this.#take_acceptance(sent);
+      for (const {parameter, after} of sent.changes) {
+        parameter.client_of_last_change = "";
+        if (parameter.edit && same(parameter.edit, after)) {
+          parameter.edit = null; // otherwise the user has edited the value again since it was sent
+        }
+      }
       if (answer.set !== null) {
         this.update_all(answer.set);
       }
-      return sent.kind === "plan"; // the list of planned changes is longer now
+      return sent.is_plan; // the list of planned changes is longer now
     }
     if ("refusal" in answer) {
       const {message, violations} = answer.refusal,
@@ -249,9 +235,6 @@ export class ParameterEdits {
     } else {
       this.problem = parameter_words.lost;
     }
-    if (sent.kind === "undo" || sent.kind === "redo") { // keep it, so that the user can undo or redo it again
-      this.#reversible[sent.kind].push(reversed(sent.changes));
-    }
     return true;
   }
 
@@ -260,29 +243,9 @@ export class ParameterEdits {
       (parameter) => parameter.edit ? [{parameter, before: parameter.requested, after: parameter.edit}] : []);
   }
 
-  #send(world: string, kind: Transaction["kind"], changes: Change[], when: When): SetParameters {
-    this.#sent = {kind, changes};
+  #send(world: string, changes: readonly Change[], when: When): SetParameters {
+    this.#sent = {changes, is_plan: when !== null};
     return fields_of(world, this.revision, changes, when);
-  }
-
-  #take_acceptance({kind, changes}: Transaction): void {
-    for (const {parameter, after} of changes) {
-      parameter.client_of_last_change = "";
-      if (parameter.edit && same(parameter.edit, after)) {
-        parameter.edit = null; // otherwise the user has edited the value again since it was sent
-      }
-    }
-    if (kind === "plan") {
-      return; // a planned change is cancelled, not undone
-    }
-    if (kind === "apply") {
-      this.#reversible.redo = [];
-    }
-    const kept = this.#reversible[kind === "undo" ? "redo" : "undo"];
-    kept.push(changes);
-    if (kept.length > transactions_kept) {
-      kept.shift();
-    }
   }
 
   /** Marks only the parameters of these violations. Returns whether any belongs to a parameter. */
@@ -309,10 +272,6 @@ export function planned_values({schedule, planned}: ParameterEdits, parameter: s
 
 function field_name(violation: Violation): string {
   return violation.field.startsWith(field_prefix) ? violation.field.slice(field_prefix.length) : violation.field;
-}
-
-function reversed(changes: readonly Change[]): Change[] {
-  return changes.map(({parameter, before, after}) => ({parameter, before: after, after: before}));
 }
 
 function fields_of(world: string, expected_revision: number, changes: readonly Change[], when: When): SetParameters {

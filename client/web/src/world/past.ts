@@ -49,9 +49,9 @@ export class Past {
 
   /** Why the past of the world cannot be shown, as a sentence; empty if it can. */
   get problem(): string {
-    const server = this.#feed.server, live = server.world(this.#live.name());
+    const server = this.#feed.server, live = server.worlds.find(this.#live.name());
     return !live                  ? common_texts.no_world :
-      live.storage || live.replay ? server.why_not("open_replay") :
+      live.storage || live.replay ? server.access.why_not("open_replay") :
                                     access_texts.run_not_stored;
   }
 
@@ -103,11 +103,9 @@ export class Past {
     return first === null || last === null ? null : {first, last};
   }
 
-  /** Shows a moment of the past; resolves when it is shown.
-   *
-   *  tick  since the generation began; absent: its first moment */
-  show(generation: number, tick?: number): Promise<void> {
-    return this.show_moment({generation, ...(tick === undefined ? {} : {tick})});
+  /** Shows the first moment of a generation; resolves when it is shown. */
+  show(generation: number): Promise<void> {
+    return this.show_moment({generation});
   }
 
   /** Shows the first moment of the generation that is `by` after the shown one, or after that of a running seek. */

@@ -44,7 +44,7 @@ export async function run_or_pause_both(context: PanelContext): Promise<void> {
 /** Why a world can be neither run nor paused now, as a sentence; empty if it can. */
 export function why_not(world: ViewedWorld): string {
   return !world.shown ? common_texts.no_world :
-                        world.server.why_not("pause", world.shown) ||
+                        world.server.access.why_not("pause", world.shown) ||
       (!world.control.is_over ? "" :
          world.is_replay      ? key_texts.end_of_replay :
                                 key_texts.run_has_ended);

@@ -5,7 +5,7 @@ export type UndoVerb = "undo"|"redo";
 
 /** Why nothing can be undone or redone now, as a sentence; empty if it can. */
 export function why_not_undo(context: PanelContext): string {
-  return context.server.why_not("set_parameters", context.world().shown);
+  return context.server.access.why_not("set_parameters", context.world().shown);
 }
 
 /** Undoes or redoes, and says what was done, or why nothing was. */

@@ -15,7 +15,8 @@ import {ParameterReader} from "./parameter_reader";
 import {Past} from "./past";
 import {PopulationReader} from "./population";
 import {Selection} from "./selection";
-import type {KnownWorld, Server} from "./server";
+import type {Server} from "./server";
+import type {KnownWorld} from "./worlds";
 import {UndoHistory} from "./undo";
 
 const poll_ms = 250;
@@ -48,9 +49,9 @@ export class ViewedWorld {
     this.undo = new UndoHistory(() => changes.notify());
     const timer = setInterval(poll, poll_ms);
     this.#end.push(
-      server.on_message((message) => this.#take(message)),
-      server.on_event((event) => this.#take_event(event)),
-      server.on_change(() => this.#server_changed()),
+      server.messages.listen((message) => this.#take(message)),
+      server.events.listen((event) => this.#take_event(event)),
+      server.changes.listen(() => this.#server_changed()),
       () => clearInterval(timer),
     );
   }
@@ -161,7 +162,7 @@ export class ViewedWorld {
         this.feed.take(message);
         this.selection.take(message.selected);
         this.control.take(message.info);
-        this.feed.announce(message.info);
+        this.feed.taken.call(message.info);
         break;
       case "drawing":
         this.feed.drawing = message.drawing;
@@ -242,8 +243,8 @@ export class ViewedWorld {
     if (this.history.is_of_earlier_run) {
       void this.history.read(this.name, false); // the world was reset
     }
-    const is_there = this.server.world(this.name) !== null || this.server.damage_of(this.name) !== "";
-    if (this.name && this.server.worlds_known && this.server.state.phase === "open" && !is_there) {
+    const is_there = this.server.worlds.find(this.name) !== null || this.server.worlds.damage_of(this.name) !== "";
+    if (this.name && this.server.worlds.are_known && this.server.state.phase === "open" && !is_there) {
       this.past.close(); // the live world was deleted
       this.name = "";
       this.#forget("", 0);
