@@ -7,6 +7,7 @@
 #include "server/protocol/populations.h"
 #include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
+#include "server/simulation/founders.h"
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world_name.h"
 
@@ -56,7 +57,8 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
             command.seed = *experiment.seed;
         }
         if (found.empty()) {
-            command.first_population = first_population_of(request, command.parameters, found);
+            command.first_population = simulation::completed(first_population_of(request, command.parameters, found),
+                                                             command.parameters, command.seed);
             const auto faults =
                 simulation::faults_of(command.first_population, command.parameters, "create_world.population");
             found.insert(found.end(), faults.begin(), faults.end());

@@ -89,7 +89,7 @@ class Run(Folder):
         # Population, food (twice), poison, time, generations; the rest as proposed.
         answers = "9\nmany\n11\n\n1.5\n1\n" + "\n" * 40
         done = evod("run", "--seed", "1", "--ask", stdin=answers)
-        self.assertIn("food_count: got many, allowed a whole number, 0 to", done.stdout)
+        self.assertIn("food_count: got \"many\", allowed a whole number, 0 to", done.stdout)
         for question in ("population_size", "poison_count", "generation_s", "population_model", "selection",
                          "crossover",
                          "rearranging", "creep", "fitness_scaling", "mutation_chance", "survivors"):
@@ -278,21 +278,28 @@ class Population(Folder):
         other = self.run_with("0,0,100,110,120,130,140,150\n0,1,101.5,90,80,70.25,60,51\n")
         self.assertNotEqual(state(done.stdout), state(other.stdout))
 
+    def test_places_without_an_organism_are_filled(self):
+        one = self.run_with("0,22,100,110,120,130,140,150\n", "--clone-founders")
+        two = self.run_with("0,0,100,110,120,130,140,150\n0,0,100,110,120,130,140,150\n")
+        self.assertEqual(state(one.stdout), state(two.stdout))
+        drawn = self.run_with("0,22,100,110,120,130,140,150\n")
+        self.assertNotEqual(state(drawn.stdout), state(two.stdout))
+        plate = self.file(self.heading + "0,3,100,110,120,130,140,150\n", "other.csv")
+        both = self.run_with("0,7,100,110,120,130,140,150\n", "--population", plate)
+        self.assertEqual(state(both.stdout), state(two.stdout))
+
     def test_errors_of_a_population_file_are_named(self):
         good = "0,0,100,110,120,130,140,150\n"
         for rows, word in {
-            good: "population[0]: got 1 organism, allowed 2 organisms (population_size)",
+            3 * good: "population[0]: got 3 organisms, allowed 2 organisms (population_size)",
             good + "0,1,100,110,20,130,140,150\n": "population[0].organism[1].body_size: got 20, allowed 40 to 200",
             good + "1,0,100,110,120,130,140,150\n": "population: got 2 islands, allowed 1 island (island_count)",
-            good + "0,2,100,110,120,130,140,150\n":
-                "line 3: got \"0,2,100,110,120,130,140,150\", allowed organism 1 of",
             good + "0,1,100,110,120,130,140\n": "line 3: got \"0,1,100,110,120,130,140\", allowed an island, an "
                                                 "organism",
             good + "0,1,100,110,120,130,140,\n": "line 3: got ",
             good + "0,1,100,110,many,130,140,150\n": "line 3: got ",
             good + "0,1,100,110,nan,130,140,150\n": "body_size: got nan",
             good + "0,1,100,110,120,130,140,150,160\n": "line 3: got ",
-            "1,0,100,110,120,130,140,150\n": "line 2: got ",
             "": "contains no organism",
         }.items():
             with self.subTest(rows):
@@ -310,11 +317,35 @@ class Check(Folder):
         self.assertIn("valid\nFew meals.", done.stdout)
         self.assertEqual(json.loads(done.stdout[done.stdout.index("{"):]), {"food_count": 3})
 
+    def test_files_of_windows_and_numpy_are_read(self):
+        path = self.folder.name + "/bom.json"
+        pathlib.Path(path).write_bytes(b'\xef\xbb\xbf{"population_size": 30.0,\r\n "food_count": 1e2}\r\n')
+        self.assertIn('"population_size": 30', evod("check", path).stdout)
+
+    def test_settings_with_which_nothing_evolves_have_warnings(self):
+        for text, word in {
+            '{"elite_count": 50}': "elite_count 50 is not below population_size 50",
+            '{"survivors": 1}': "all organisms survive",
+            '{"body_size_min": 150}': "the same body_size",
+            '{"seed": 9007199254740992}': "2^53",
+        }.items():
+            with self.subTest(text):
+                path = self.file(text)
+                self.assertIn("warning: ", evod("check", path).stdout)
+                self.assertIn(word, evod("check", path).stdout)
+                ran = evod("run", path, "--generations", "1", "--set", "generation_s=0.1", "--set", "tick_s=0.1")
+                self.assertIn("evod: warning: ", ran.stderr)
+                self.assertIn(word, ran.stderr)
+        self.assertNotIn("warning", evod("check", self.file('{"elite_count": 49, "seed": 7}')).stdout)
+
     def test_errors_name_their_line(self):
         for text, word in {
             '{\n  "food_count": 3,\n  "mutation_chance": 2\n}': "mutation_chance (line 3): got 2, allowed 0 to 1",
             '{\n\n "fod_count": 3}': "fod_count (line 3): unknown name; did you mean food_count",
-            '{\n "food_count": 3,\n}': "not JSON: line 3",
+            '{\n "food_count": 3,\n}': "not JSON: line 3, column 1: syntax error at }; remove the comma before }",
+            '{\n "mutation_chance": "0.2"}': 'got "0.2", allowed 0 to 1; write it without quotation marks',
+            '{\n "mutation_chance": 0,2}': "write a point in a decimal number",
+            '{\n "mutation_chance": {"every 5": 0.2}}': "list each generation",
             '{\n "food_count": -3}': "food_count (line 2): got -3",
             '{\n "seed": 1.5}': "seed (line 2): got 1.5",
             '{\n "food_count": [3]}': "food_count (line 2): got [3]",
