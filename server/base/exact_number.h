@@ -1,5 +1,5 @@
-// Exact numbers: whole numbers that a double represents exactly. R, NumPy, JavaScript and spreadsheet programs read numbers
-// as doubles, so only these numbers survive them.
+// Exact numbers: whole numbers that a double represents exactly. R, NumPy, JavaScript and spreadsheet programs read
+// numbers as doubles, so only these numbers survive them.
 //
 // Threads      any; no state.
 #pragma once

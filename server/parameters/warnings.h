@@ -1,4 +1,4 @@
-// Warnings: valid parameters with which nothing can evolve. The programs print them and run the experiment all the same,
+// Warnings: valid parameters with which nothing can evolve. The programs print them and still run the experiment,
 // because a control may need such a setting.
 //
 // Threads      any; no state.
