@@ -125,10 +125,10 @@ std::optional<Sweep> sweep_in(const std::string& there, const Sweep& sweep) {
     return read ? std::optional{*std::move(read)} : std::nullopt;
 }
 
-/// Whether the runs of `smaller` are runs of `sweep` with the same cells and replicates.
+/// Whether the runs of `smaller` are some of the runs of `sweep`, with the same cells and replicates.
 bool is_part_of(const Sweep& smaller, const Sweep& sweep) {
     if (smaller.swept != sweep.swept || smaller.every != sweep.every || smaller.cells.size() > sweep.cells.size() ||
-        smaller.replicates > sweep.replicates) {
+        smaller.run_count() == sweep.run_count() || smaller.replicates > sweep.replicates) {
         return false;
     }
     for (std::uint32_t replicate = 0; replicate < smaller.replicates; ++replicate) {

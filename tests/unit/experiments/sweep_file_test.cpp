@@ -212,7 +212,7 @@ TEST(SweepFile, AnExperimentIsLoadedByItsPath) {
 
 TEST(SweepFile, ErrorsNameTheFieldAndItsLine) {
     const std::map<std::string, std::string> wrong{
-        {"{\n\"list\": [{}],\n\"steps\": 3}", "steps (line 3): unknown name, allowed description, experiment, grid"},
+        {"{\n\"list\": [{}],\n\"steps\": 3}", "steps (line 3): unknown name; did you mean seeds?"},
         {"{\n\"list\": [{}],\n\"seed\": 1, \"seed\": 1}", "seed (line 3): got given twice, allowed given once"},
         {R"({"generations": 3})", "grid: got none of them, allowed one of grid, list, latin_hypercube"},
         {"{\"list\": [{}],\n\"grid\": {\"food_count\": [1]}}", "grid (line 2): got list and grid, allowed one of grid"},
