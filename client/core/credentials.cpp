@@ -50,6 +50,9 @@ Result<void> apply(const Credentials& credentials, Options& options) {
         return refused("other users can read the file: run chmod 600 on it");
     }
     auto text = file->read(files::token_bytes_max);
+    if (text && text->starts_with("\xef\xbb\xbf")) { // a byte order mark, which editors may write
+        text->erase(0, 3);
+    }
     if (!text) {
         return refused(text.error().why);
     }

@@ -556,7 +556,12 @@ void add_run_commands(command_line::Command& app, const Common& common) {
     auto& step_command = app.add_command("step", "Run N ticks, then pause; returns after the last tick").group(group);
     auto& ticks = step_command.keep(std::uint64_t{1});
     auto& no_wait = step_command.keep(false);
-    step_command.add_option("N", &ticks, "Number of ticks; default: 1").check(at_least_one);
+    step_command.add_option("N", &ticks, "Number of ticks; default: 1").check([](const std::string& word) {
+        const std::string fault = at_least_one(word);
+        return fault.empty() || !word.starts_with('-')
+                   ? fault
+                   : fault + "; a run does not go back: evod replay and the time line of the page show earlier moments";
+    });
     step_command.add_flag("--no-wait", &no_wait, "Return immediately");
     step_command.action([&] { step(common, ticks, !no_wait); });
 

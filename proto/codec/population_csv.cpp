@@ -8,25 +8,21 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace evod::codec {
 namespace {
 
 constexpr std::size_t genes_at = std::string_view{"island,organism,"}.size(); // where the heading names the first gene
+constexpr std::size_t shown_bytes_max = 80;
 
 Damage wrong_line(std::uint64_t line, const std::string& allowed, std::string_view got) {
-    constexpr std::size_t shown_bytes_max = 80;
     return {"line " + std::to_string(line) + ": got \"" + std::string{got.substr(0, shown_bytes_max)} + "\", allowed " +
             allowed};
-}
-
-/// Parses a cell. Returns false if it is not a T.
-template <class T>
-bool parse(std::string_view cell, T& value) {
-    const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    return read.ec == std::errc{} && read.ptr == cell.data() + cell.size();
 }
 
 /// The row as text, for a message about it.
@@ -38,51 +34,143 @@ std::string joined(std::span<const std::string_view> cells) {
     return text;
 }
 
+std::string_view without_blanks(std::string_view cell) {
+    const std::size_t first = cell.find_first_not_of(" \t"), last = cell.find_last_not_of(" \t");
+    return first == std::string_view::npos ? std::string_view{} : cell.substr(first, last + 1 - first);
+}
+
+/// Parses a cell. Returns false if it is not a T.
+template <class T>
+bool parse(std::string_view cell, T& value) {
+    cell = without_blanks(cell);
+    const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    return read.ec == std::errc{} && read.ptr == cell.data() + cell.size();
+}
+
+/// Where the columns of a file are.
+struct Columns {
+    std::size_t island = 0, organism = 0, count = 0;
+    std::vector<std::size_t> genes; // in the order of Population::gene_names
+};
+
+/// Reads the heading: the names of the columns in any order. A column without a name is ignored if it is the first one,
+/// because R writes the names of the rows there.
+std::optional<Columns> read_heading(std::span<const std::string_view> cells, std::vector<std::string>& gene_names) {
+    Columns columns;
+    columns.count = cells.size();
+    std::vector<std::string> names;
+    for (const std::string_view cell : cells) {
+        names.emplace_back(without_blanks(cell));
+    }
+    const auto take = [&](std::string_view name) {
+        const auto found = std::ranges::find(names, name);
+        return found == names.end() ? names.size() : static_cast<std::size_t>(found - names.begin());
+    };
+    const std::size_t first = !names.empty() && names[0].empty() ? 1 : 0;
+    std::vector<std::string> sorted{names.begin() + static_cast<std::ptrdiff_t>(std::min(first, names.size())),
+                                    names.end()};
+    std::ranges::sort(sorted);
+    if (std::ranges::adjacent_find(sorted) != sorted.end() || std::ranges::find(sorted, "") != sorted.end()) {
+        return std::nullopt;
+    }
+    columns.island = take("island");
+    columns.organism = take("organism");
+    if (columns.island == names.size() || columns.organism == names.size()) {
+        return std::nullopt;
+    }
+    std::vector<bool> taken(names.size());
+    taken[columns.island] = taken[columns.organism] = true;
+    taken[0] = taken[0] || first == 1;
+    const auto add_gene = [&](std::size_t column) {
+        taken[column] = true;
+        columns.genes.push_back(column);
+        gene_names.push_back(names[column]);
+    };
+    for (std::string_view rest = population_heading.substr(genes_at); !rest.empty();) {
+        const std::string_view name = rest.substr(0, rest.find(','));
+        rest.remove_prefix(std::min(name.size() + 1, rest.size()));
+        const std::size_t column = take(name);
+        if (column == names.size()) {
+            return std::nullopt;
+        }
+        add_gene(column);
+    }
+    for (std::size_t column = 0; column < names.size(); ++column) {
+        if (!taken[column]) {
+            add_gene(column);
+        }
+    }
+    return columns.genes.size() <= genes_max ? std::optional{columns} : std::nullopt;
+}
+
+/// Parses a gene. With a separator other than the comma, a comma may be the decimal point.
+bool parse_gene(std::string_view cell, char separator, float& gene) {
+    if (separator == ',' || cell.find(',') == std::string_view::npos) {
+        return parse(cell, gene);
+    }
+    std::string with_point{cell};
+    std::ranges::replace(with_point, ',', '.');
+    return parse(with_point, gene);
+}
+
+/// What is wrong with a row that cannot be read: names its first wrong column, and the likely cause.
+Damage wrong_row(std::uint64_t line, std::span<const std::string_view> cells, const Columns& columns,
+                 const std::string& wrong_column, const std::string& allowed) {
+    if (!wrong_column.empty()) {
+        return wrong_line(line, allowed + " (column " + wrong_column + ")", joined(cells));
+    }
+    const std::string cause = cells.size() > columns.count
+                                  ? "; if numbers have a decimal comma, write a point, or separate cells by semicolons"
+                                  : "";
+    return wrong_line(
+        line, allowed + ", so " + std::to_string(columns.count) + " cells, not " + std::to_string(cells.size()) + cause,
+        joined(cells));
+}
+
 } // namespace
 
 Result<Population> read_population(std::istream& in) {
-    text::CsvReader rows{in};
+    text::CsvReader rows{in, text::Separator::FromHeading};
     Population population;
-    std::vector<std::string>& names = population.gene_names;
-    bool good = rows.next();
-    const std::string heading = joined(rows.cells());
-    good = good && heading.starts_with(population_heading) &&
-           (heading.size() == population_heading.size() || heading[population_heading.size()] == ',');
-    for (std::size_t i = 2; good && i < rows.cells().size(); ++i) {
-        names.emplace_back(rows.cells()[i]);
-        good = !names.back().empty() && names.size() <= genes_max;
-    }
-    if (!good) {
-        return wrong_line(
-            1, "the heading " + std::string{population_heading} + ", which the names of further genes may follow",
-            heading);
+    const bool has_heading = rows.next();
+    const auto columns = has_heading ? read_heading(rows.cells(), population.gene_names) : std::nullopt;
+    if (!columns) {
+        return wrong_line(1,
+                          "the heading " + std::string{population_heading} +
+                              " in any order, to which the names of further genes may be added, each name once",
+                          joined(rows.cells()));
     }
 
     std::vector<std::vector<float>>& islands = population.islands;
-    std::vector<float> genes(names.size());
+    std::map<std::uint64_t, std::size_t> index_of_island;
+    std::vector<float> genes(population.gene_names.size());
     while (rows.next()) {
         const std::span<const std::string_view> cells = rows.cells();
+        if (std::ranges::all_of(cells, [](std::string_view cell) { return without_blanks(cell).empty(); })) {
+            continue; // spreadsheet programs write empty rows
+        }
+        const std::string allowed = "an island, an organism and " + std::to_string(genes.size()) + " genes";
+        if (cells.size() != columns->count) {
+            return wrong_row(rows.line(), cells, *columns, "", allowed);
+        }
         std::uint64_t island = 0, organism = 0;
-        good = cells.size() == genes.size() + 2 && parse(cells[0], island) && parse(cells[1], organism);
-        for (std::size_t i = 0; good && i < genes.size(); ++i) {
-            good = parse(cells[i + 2], genes[i]);
+        std::string wrong = !parse(cells[columns->island], island)       ? "island"
+                            : !parse(cells[columns->organism], organism) ? "organism"
+                                                                         : "";
+        for (std::size_t i = 0; wrong.empty() && i < genes.size(); ++i) {
+            if (!parse_gene(cells[columns->genes[i]], rows.separator(), genes[i])) {
+                wrong = population.gene_names[i];
+            }
         }
-        if (!good) {
-            return wrong_line(rows.line(), "an island, an organism and " + std::to_string(genes.size()) + " genes",
-                              joined(cells));
+        if (!wrong.empty()) {
+            return wrong_row(rows.line(), cells, *columns, wrong, allowed);
         }
-        if (island == islands.size() && organism == 0) {
+        const auto [place, is_new] = index_of_island.try_emplace(island, islands.size());
+        if (is_new) {
             islands.emplace_back();
         }
-        const std::uint64_t last = islands.empty() ? 0 : islands.size() - 1;
-        const std::uint64_t next = islands.empty() ? 0 : population.organism_count(last);
-        if (islands.empty() || island != last || organism != next) {
-            return wrong_line(rows.line(),
-                              "organism " + std::to_string(next) + " of island " + std::to_string(last) +
-                                  ", or the next island",
-                              joined(cells));
-        }
-        islands.back().insert(islands.back().end(), genes.begin(), genes.end());
+        std::vector<float>& there = islands[place->second];
+        there.insert(there.end(), genes.begin(), genes.end());
     }
     if (rows.has_open_quote()) {
         return Damage{"line " + std::to_string(rows.line()) + ": a quotation mark is not closed"};
@@ -93,6 +181,11 @@ Result<Population> read_population(std::istream& in) {
     if (islands.empty()) {
         return Damage{"contains no organism"};
     }
+    std::vector<std::vector<float>> in_order; // by the number of the island
+    for (const auto& [number, index] : index_of_island) {
+        in_order.push_back(std::move(islands[index]));
+    }
+    islands = std::move(in_order);
     return population;
 }
 

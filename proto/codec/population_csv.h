@@ -3,8 +3,13 @@
 //   island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius
 //   0,0,103.2,97.5,…
 //
-// The columns of further genes follow if the chromosomes have more than the six body genes. Islands and organisms are
-// numbered from 0, in order. Each gene is the shortest text that parses to the same float.
+// The columns of further genes follow if the chromosomes have more than the six body genes. evod numbers islands and
+// organisms from 0, in order, and writes each gene as the shortest text that parses to the same float.
+//
+// A file that another program has changed may have its columns in any order, cells in quotation marks or with blanks,
+// empty rows, and a first column without a name (R). If semicolons or tabs separate cells, numbers may have a decimal
+// comma. Numbers of islands and organisms need not count from 0 and may repeat: islands are read in order of their
+// numbers, and the organisms of an island in the order of their rows. So rows of several files can be put together.
 #pragma once
 
 #include "proto/codec/result.h"
@@ -28,7 +33,8 @@ struct Population {
     std::size_t organism_count(std::size_t island) const { return islands[island].size() / gene_names.size(); }
 };
 
-/// Reads the genes. Does not check whether a world can start with them. Damage reads "line 3: got …, allowed …".
+/// Reads the genes, those of the body first. Does not check whether a world can start with them. Damage
+/// reads "line 3: got …, allowed …", and names the column.
 Result<Population> read_population(std::istream& in);
 
 /// Returns the text of a file with these genes.

@@ -29,11 +29,17 @@ inline std::string csv_cell(std::string_view text) {
     return quoted + '"';
 }
 
+/// What separates the cells of a row.
+enum class Separator {
+    Comma,
+    FromHeading, // semicolon or tab if the first row contains one and no comma; else comma
+};
+
 /// Reads a table row by row.
 class CsvReader {
   public:
     /// in  must outlive the reader.
-    explicit CsvReader(std::istream& in) : in_{in} {}
+    explicit CsvReader(std::istream& in, Separator separator = Separator::Comma) : in_{in}, wanted_{separator} {}
 
     /// Reads the next row. Returns false at the end of the table, and if the last cell has no closing quotation mark.
     bool next() {
@@ -47,11 +53,17 @@ class CsvReader {
         if (line_ == 1 && row_.starts_with("\xef\xbb\xbf")) {
             row_.erase(0, 3);
         }
+        if (line_ == 1 && wanted_ == Separator::FromHeading) {
+            const auto contains = [&](char c) { return row_.find(c) != std::string::npos; };
+            separator_ = contains(',') ? ',' : contains(';') ? ';' : contains('\t') ? '\t' : ',';
+        }
         return row_.find('"') == std::string::npos ? split_plain() : split_quoted();
     }
 
     /// The cells of the row, valid until the next call of next(). An empty line is one empty cell.
     std::span<const std::string_view> cells() const { return cells_; }
+    /// The character that separates cells.
+    char separator() const { return separator_; }
     /// The number of the row's first line, from 1.
     std::uint64_t line() const { return line_; }
     /// Whether next() returned false because a quotation mark is not closed.
@@ -73,7 +85,7 @@ class CsvReader {
 
     bool split_plain() {
         for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
-            end = row_.find(',', begin);
+            end = row_.find(separator_, begin);
             cells_.push_back(std::string_view{row_}.substr(begin, end == std::string::npos ? end : end - begin));
         }
         return true;
@@ -92,7 +104,7 @@ class CsvReader {
                     return false;
                 }
             }
-            if (i == row_.size() || (row_[i] == ',' && !quoted)) {
+            if (i == row_.size() || (row_[i] == separator_ && !quoted)) {
                 places.emplace_back(begin, kept - begin);
                 begin = kept;
                 if (i == row_.size()) {
@@ -113,6 +125,8 @@ class CsvReader {
     }
 
     std::istream& in_;
+    Separator wanted_;
+    char separator_ = ',';
     std::string row_;
     std::vector<std::string_view> cells_;
     std::uint64_t line_ = 1, lines_in_row_ = 0;

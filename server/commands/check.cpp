@@ -3,12 +3,15 @@
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/experiments/experiment_file.h"
+#include "server/parameters/warnings.h"
 #include "server/physics/constant_acceleration.h"
 
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace evod::commands {
 namespace {
@@ -18,6 +21,10 @@ int check(const std::string& path) {
     const base::Result<parameters::Experiment> experiment = experiments::load_experiment(path);
     if (!experiment) {
         return fail(experiment.error());
+    }
+    std::vector<std::string> warnings = parameters::warnings_of(experiment->parameters);
+    if (auto warning = warning_about(experiment->seed)) {
+        warnings.push_back(*std::move(warning));
     }
     std::cout << path << ": valid";
     if (!experiment->description.empty()) {
@@ -29,6 +36,9 @@ int check(const std::string& path) {
         std::cout << "\nEvery parameter has its default.\n";
     } else {
         std::cout << "\nParameters that differ from their defaults:\n" << changes;
+    }
+    for (const std::string& warning : warnings) {
+        std::cout << "warning: " << warning << "\n";
     }
     return 0;
 }

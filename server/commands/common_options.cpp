@@ -2,10 +2,13 @@
 
 #include "proto/command_line/terminal.h"
 #include "proto/command_line/words.h"
+#include "server/base/exact_number.h"
 #include "server/base/instructions.h"
+#include "server/parameters/warnings.h"
 
 #include <algorithm>
 #include <cstdlib>
+#include <iostream>
 #include <thread>
 
 namespace evod::commands {
@@ -24,6 +27,28 @@ int fail(const base::Refusal& error) {
         fail(base::to_text(violation));
     }
     return exit_error;
+}
+
+void warn(const std::string& warning) {
+    std::cerr << "evod: warning: " << warning << "\n";
+}
+
+std::optional<std::string> warning_about(std::optional<base::Seed> seed) {
+    if (!seed || base::is_portable(*seed)) {
+        return std::nullopt;
+    }
+    return "seed " + std::to_string(seed->value) +
+           ": R, JavaScript and spreadsheet programs round whole numbers from 2^53 on, so a table that they have "
+           "written no longer repeats this run; choose a seed below 9007199254740992";
+}
+
+void warn_about(const parameters::Parameters& parameters, std::optional<base::Seed> seed) {
+    for (const std::string& warning : parameters::warnings_of(parameters)) {
+        warn(warning);
+    }
+    if (const auto warning = warning_about(seed)) {
+        warn(*warning);
+    }
 }
 
 std::size_t default_thread_count() {

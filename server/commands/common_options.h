@@ -2,7 +2,9 @@
 #pragma once
 
 #include "proto/command_line/number.h"
+#include "server/base/random.h"
 #include "server/base/result.h"
+#include "server/parameters/model_parameters.h"
 
 #include <cstddef>
 #include <optional>
@@ -19,6 +21,13 @@ constexpr int exit_interrupted = 130; // ended by SIGINT or SIGTERM
 /// Prints an error to stderr, preceded by the name of the program: "evod: …". Returns exit_error.
 int fail(const std::string& error);
 int fail(const base::Refusal& error);
+
+/// Prints a warning to stderr: "evod: warning: …".
+void warn(const std::string& warning);
+/// Prints the warnings about the parameters, and about a seed that programs with doubles read wrongly.
+void warn_about(const parameters::Parameters& parameters, std::optional<base::Seed> seed);
+/// Returns the warning about a seed; nullopt if there is none.
+std::optional<std::string> warning_about(std::optional<base::Seed> seed);
 
 /// The number of processors, at least 1. This is the default of --threads and --jobs.
 std::size_t default_thread_count();

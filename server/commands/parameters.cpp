@@ -48,6 +48,7 @@ std::string parameter_list() {
         "reset. Each value holds from the first tick of its generation. A breeding parameter that is listed for\n"
         "generation N therefore first affects the breeding of generation N + 1. Before the first listed\n"
         "generation, the parameter has its default value.\n\n"
+        "Genes are 32-bit floats with about seven significant digits: a gene of 1,000,000 has steps of 0.06.\n\n"
         "Users change these parameters most often: " +
         most_used_names() + ".\n";
     std::string_view topic;

@@ -16,7 +16,9 @@
 #include "server/replay/columns.h"
 #include "server/runtime/random_ids.h"
 #include "server/runtime/worker_pool.h"
+#include "server/simulation/founders.h"
 #include "server/simulation/world.h"
+#include "server/simulation/world_name.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -25,6 +27,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -39,8 +42,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct RunOptions {
-    std::string experiment; // path of an experiment file; empty: use the default world
-    std::string population; // path of a CSV file; empty: draw the first generation at random
+    std::string experiment;              // path of an experiment file; empty: use the default world
+    std::vector<std::string> population; // paths of CSV files; empty: draw the first generation at random
+    bool clone_founders = false;         // fill places without an organism with copies instead of random organisms
+    std::uint32_t every = 1;             // print and write only every n-th generation, and the last one
+    std::optional<std::uint32_t> wall_s; // interrupt the run after this time
     std::optional<std::uint64_t> seed;
     std::optional<std::uint32_t> generations; // overrides generation_limit
     std::vector<std::string> changes;         // texts of the form "name=value"
@@ -149,6 +155,12 @@ base::Result<Recording> open_recording(const RunOptions& options, Beginning& beg
         experiment.seed = recording->seed() ? recording->seed() : experiment.seed;
     }
     experiment.seed = experiment.seed.value_or(runtime::draw_seed());
+    beginning.first_population =
+        recording && recording->stored() != experiments::Stored::Nothing
+            ? recording->first_population()
+            : simulation::completed(beginning.first_population, experiment.parameters, *experiment.seed,
+                                    options.clone_founders ? simulation::Filling::Clones
+                                                           : simulation::Filling::FromSeed);
     return recording;
 }
 
@@ -237,6 +249,7 @@ class Output {
         gene_names_ = replay::gene_names_of(experiment.parameters);
         several_islands_ = experiment.parameters.island_count > 1;
         csv_path_ = options.csv;
+        every_ = options.every;
         json_ = options.json;
         if (auto opened = open_csv(recording); !opened) {
             return opened;
@@ -258,7 +271,12 @@ class Output {
         return {};
     }
     /// Writes the rows of a generation.
-    base::Result<void> write(const simulation::GenerationRows& rows) {
+    ///
+    /// last  whether the run ends with this generation.
+    base::Result<void> write(const simulation::GenerationRows& rows, bool last) {
+        if (!last && rows.front().generation % every_ != 0) {
+            return {};
+        }
         for (const simulation::GenerationStatistics& statistics : rows) {
             if (!json_) {
                 std::puts(table_row(statistics, several_islands_).c_str());
@@ -290,12 +308,22 @@ class Output {
             return cannot_write_csv(std::strerror(errno));
         }
         if (recording) {
-            if (auto read = recording->read_statistics([this](const auto& generation) { add_to_csv(generation); });
+            if (auto read = recording->read_statistics([&](const auto& generation) {
+                    if (generation.front().generation % every_ == 0 || is_last_stored(*recording, generation)) {
+                        add_to_csv(generation);
+                    }
+                });
                 !read) {
                 return read;
             }
         }
         return flush_csv();
+    }
+    /// Whether a whole run ends with this generation.
+    static bool is_last_stored(const experiments::RunRecording& recording,
+                               const std::vector<simulation::GenerationStatistics>& generation) {
+        return recording.stored() == experiments::Stored::Whole &&
+               generation.front().generation == recording.continues_at();
     }
     void add_to_csv(const std::vector<simulation::GenerationStatistics>& generation) {
         for (const simulation::GenerationStatistics& statistics : generation) {
@@ -313,6 +341,7 @@ class Output {
 
     std::vector<std::string> gene_names_;
     bool several_islands_ = false, json_ = false;
+    std::uint32_t every_ = 1;
     std::string csv_path_;
     std::optional<files::UnfinishedFile> csv_;
     std::optional<replay::Table> table_;
@@ -325,7 +354,8 @@ struct Simulation {
     experiments::RunRecording* recording; // nullptr: the run has no file
     Output& output;
     ComputationTime& cost;
-    base::Result<void> written = {}; // the first error of a file
+    std::optional<Clock::time_point> deadline = {}; // when --wall-time is over
+    base::Result<void> written = {};                // the first error of a file
     ProgressLine progress{};
 
     /// Calls write() unless there was an error, and keeps its error.
@@ -364,7 +394,7 @@ struct Simulation {
         while (!stopped && !world.generation_over()) {
             advance_slice();
             progress.show([&] { return progress_of(world); });
-            stopped = interrupted() || !written;
+            stopped = has_to_stop();
         }
         cost.tick_s += seconds_since(began);
         world.take_events();
@@ -385,9 +415,10 @@ struct Simulation {
             try_to([&] { return recording->commit(); });
         }
         progress.clear();
-        try_to([&] { return output.write(ended); });
-        return !goes_on || !written || interrupted();
+        try_to([&] { return output.write(ended, !goes_on); });
+        return !goes_on || has_to_stop();
     }
+    bool has_to_stop() const { return interrupted() || !written || (deadline && Clock::now() >= *deadline); }
     /// Simulates until the run ends, is interrupted or cannot be written.
     void run() {
         bool stopped = !written;
@@ -425,10 +456,20 @@ base::Result<void> fewer_processes_than_islands(std::uint32_t processes, std::ui
                        ": start at most one process per island, or set island_count");
 }
 
+/// Returns whether a server that finds the file in its data folder loads it.
+bool is_file_of_server(const std::string& run_file) {
+    const std::filesystem::path path{run_file};
+    return path.extension() == ".evod" && simulation::is_world_name(path.stem().string());
+}
+
 /// Prints statistics to stdout, progress and errors to stderr. Returns the exit status.
 int run(const RunOptions& options, const SharedWork& shared) {
     if (options.ask && shared.processes.size() > 1) {
         fail("--ask: not possible with several processes; start evod run without mpirun");
+        return exit_value_not_allowed;
+    }
+    if (options.wall_s && shared.processes.size() > 1) {
+        fail("--wall-time: not possible with several processes; give mpirun or the batch system the limit");
         return exit_value_not_allowed;
     }
     auto beginning = beginning_of(options);
@@ -440,6 +481,13 @@ int run(const RunOptions& options, const SharedWork& shared) {
         return sound.error().code == base::RefusalCode::InvalidArgument ? exit_value_not_allowed : status;
     }
     catch_interrupts();
+    if (shared.processes.rank() == 0) {
+        warn_about(beginning->experiment.parameters, beginning->experiment.seed);
+        if (!options.run_file.empty() && !is_file_of_server(options.run_file)) {
+            warn(options.run_file + ": a server ignores this file in its folder, because a name of a world has only "
+                                    "letters, digits, _ and -, and the file ends with .evod");
+        }
+    }
     const auto recording = open_recording(options, *beginning);
     if (!recording) {
         return fail(recording.error());
@@ -464,6 +512,9 @@ int run(const RunOptions& options, const SharedWork& shared) {
     Simulation simulation{make_world(*beginning, *recording, *executor, shared.maker), *executor, recording->get(),
                           output, cost};
     cost.start_s = seconds_since(start);
+    if (options.wall_s) {
+        simulation.deadline = start + std::chrono::seconds{*options.wall_s};
+    }
     if (*recording) {
         simulation.written = (*recording)->begin(simulation.world, runtime::draw_run_id());
     }
@@ -478,8 +529,12 @@ int run(const RunOptions& options, const SharedWork& shared) {
 
 /// The options that decide what is computed, as text. share_worlds() compares it between the processes.
 std::string text_of(const RunOptions& options) {
-    std::string text = "run " + options.experiment + "\n" + options.population + "\n" + options.run_file + "\n" +
-                       std::to_string(options.seed.value_or(0)) + " " + std::to_string(options.generations.value_or(0));
+    std::string text = "run " + options.experiment + "\n" + (options.clone_founders ? "clones" : "") + "\n" +
+                       options.run_file + "\n" + std::to_string(options.seed.value_or(0)) + " " +
+                       std::to_string(options.generations.value_or(0));
+    for (const std::string& path : options.population) {
+        text += "\npopulation " + path;
+    }
     for (const std::string& change : options.changes) {
         text += "\n" + change;
     }
@@ -499,7 +554,10 @@ void add_run_command(command_line::Command& app) {
     command.add_option(
         "--population", &options.population,
         "CSV file from `evod export --what population`; the run begins with its organisms instead of random "
-        "ones");
+        "ones. Given several times, the run begins with the organisms of all files. Places that are left get random "
+        "organisms");
+    command.add_flag("--clone-founders", &options.clone_founders,
+                     "Fill the places that --population leaves with copies of its organisms, in turn");
     command
         .add_option("--generations", &options.generations,
                     "Number of generations, 0: no limit; default: the parameter generation_limit")
@@ -507,7 +565,18 @@ void add_run_command(command_line::Command& app) {
     add_sharing_options(command, options.sharing);
     command.add_option("--set", &options.changes, "NAME=VALUE: set a parameter; evod parameters lists all parameters");
     command.add_option("--csv", &options.csv,
-                       "CSV file for the statistics of every generation; it has the ending .part until the run ends");
+                       "CSV file for the statistics of every generation; it has the ending .part until the run ends, "
+                       "and then replaces a file of this name");
+    command
+        .add_option("--every", &options.every,
+                    "Print and write only generations that this number divides, and the last one")
+        .check(command_line::WholeNumber{.min = 1, .max = std::numeric_limits<std::uint32_t>::max()});
+    command
+        .add_option(
+            "--wall-time", &options.wall_s,
+            "Seconds after which the run is interrupted, as by Ctrl-C; with --run-file the same command continues "
+            "it")
+        .check(command_line::WholeNumber{.min = 1, .max = std::numeric_limits<std::uint32_t>::max()});
     command.add_option("--run-file", &options.run_file,
                        "Run file, NAME.evod, in which the run is stored; if it contains a part of this run, the run "
                        "continues at the beginning of the last generation in it");

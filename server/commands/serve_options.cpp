@@ -6,6 +6,7 @@
 #include "server/experiments/population_file.h"
 #include "server/log/log.h"
 #include "server/runtime/random_ids.h"
+#include "server/simulation/founders.h"
 
 #include <boost/asio/ip/address_v6.hpp>
 
@@ -129,13 +130,17 @@ base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
     if (options.seed) {
         create.seed = base::Seed{*options.seed};
     }
-    auto population = experiments::load_population(options.population_file, create.parameters);
+    std::vector<std::string> files;
+    if (!options.population_file.empty()) {
+        files.push_back(options.population_file);
+    }
+    auto population = experiments::load_population(files, create.parameters);
     if (!population) {
         base::Refusal refused = population.error();
         refused.message = "--population: " + refused.message;
         return refused;
     }
-    create.first_population = *std::move(population);
+    create.first_population = simulation::completed(*population, create.parameters, create.seed);
     return create;
 }
 

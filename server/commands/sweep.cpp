@@ -10,7 +10,7 @@
 #include "server/experiments/sweep_file.h"
 #include "server/experiments/sweep_folder.h"
 #include "server/experiments/sweep_runner.h"
-#include "server/experiments/trials.h"
+#include "server/parameters/warnings.h"
 #include "server/runtime/processes.h"
 #include "server/runtime/random_ids.h"
 #include "server/simulation/model_version.h"
@@ -24,6 +24,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -106,7 +107,7 @@ std::string plan_text(const SweepOptions& options, const Sweep& sweep) {
 }
 
 std::string seed_text(const Sweep& sweep, std::uint32_t replicate) {
-    return std::to_string(experiments::replicate_seed(sweep.seed, replicate).value);
+    return std::to_string(sweep.seed_of(replicate).value);
 }
 
 /// Prints the runs of the sweep as two tables with tab-separated columns: seeds by replicate, and values by cell.
@@ -142,7 +143,7 @@ void print_seeds(const Sweep& sweep) {
 boost::json::object plan_object(const Sweep& sweep) {
     boost::json::array seeds, parameters, cells;
     for (std::uint32_t replicate = 0; replicate < sweep.replicates; ++replicate) {
-        seeds.push_back(experiments::replicate_seed(sweep.seed, replicate).value);
+        seeds.push_back(sweep.seed_of(replicate).value);
     }
     for (const parameters::ParameterDescription* parameter : sweep.swept) {
         parameters.emplace_back(std::string{parameter->name});
@@ -166,7 +167,7 @@ boost::json::object run_object(const Sweep& sweep, std::size_t run) {
     return {{"run", run},
             {"cell", run / sweep.replicates},
             {"replicate", replicate},
-            {"seed", experiments::replicate_seed(sweep.seed, static_cast<std::uint32_t>(replicate)).value}};
+            {"seed", sweep.seed_of(static_cast<std::uint32_t>(replicate)).value}};
 }
 
 /// Writes runs.csv. Prints its number of rows, and how many runs ended by which criterion.
@@ -308,6 +309,33 @@ std::vector<std::size_t> of_rank_0(const std::vector<std::size_t>& runs, runtime
     return base::unpack<std::vector<std::size_t>>(processes.gather(base::pack(runs)).front());
 }
 
+/// Prints which cells were left out, which cannot evolve, and which seeds R rounds. A warning names one cell.
+void print_warnings(const Sweep& sweep) {
+    constexpr std::size_t printed_max = 10;
+    for (std::size_t i = 0; i < std::min(sweep.skipped.size(), printed_max); ++i) {
+        warn("left out, because it is impossible: " + sweep.skipped[i]);
+    }
+    if (sweep.skipped.size() > printed_max) {
+        warn(counted(sweep.skipped.size() - printed_max, "more cell") + " left out, because they are impossible");
+    }
+    std::map<std::string, std::vector<std::size_t>> cells; // by warning
+    for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
+        for (const std::string& warning : parameters::warnings_of(sweep.parameters_of(cell))) {
+            cells[warning].push_back(cell);
+        }
+    }
+    for (const auto& [warning, of] : cells) {
+        const std::string more = of.size() > 1 ? " and " + counted(of.size() - 1, "more cell") : "";
+        warn((of.size() == sweep.cells.size() ? "all cells" : "cell " + std::to_string(of[0]) + more) + ": " + warning);
+    }
+    for (std::uint32_t replicate = 0; replicate < sweep.replicates; ++replicate) {
+        if (const auto warning = warning_about(sweep.seed_of(replicate))) {
+            warn(*warning);
+            break;
+        }
+    }
+}
+
 /// Executes the runs that are still missing. Returns the exit status.
 Result<int> execute_missing_runs(const SweepOptions& options, const Sweep& sweep, const SweepFolder& folder,
                                  const std::string& out, runtime::Processes& processes) {
@@ -408,6 +436,9 @@ Result<int> run_sweep(const SweepOptions& options, runtime::Processes& processes
         !agreed) {
         return agreed.error();
     }
+    if (processes.rank() == 0 && !options.run && !options.gather) {
+        print_warnings(*sweep);
+    }
     if (options.dry_run) {
         if (options.json) {
             print_json(plan_object(*sweep));
@@ -423,7 +454,20 @@ Result<int> run_sweep(const SweepOptions& options, runtime::Processes& processes
     if (std::error_code error; options.gather && !std::filesystem::exists(out, error)) {
         return refusal(base::RefusalCode::NotFound, out + ": no such folder, so there are no results to gather");
     }
-    const auto folder = SweepFolder::open(out, *sweep);
+    // Only rank 0 extends the sweep in a folder; the others then find it extended.
+    if (processes.size() > 1) {
+        Result<std::string> opened{out};
+        if (processes.rank() == 0) {
+            if (const auto first = SweepFolder::open(out, *sweep, SweepFolder::Extension::Allowed); !first) {
+                opened = first.error();
+            }
+        }
+        if (auto agreed = agree(opened, processes); !agreed) {
+            return agreed.error();
+        }
+    }
+    const auto folder = SweepFolder::open(
+        out, *sweep, options.array_index ? SweepFolder::Extension::Refused : SweepFolder::Extension::Allowed);
     if (auto agreed = agree(folder ? Result<std::string>{out} : folder.error(), processes); !agreed) {
         return agreed.error();
     }

@@ -8,7 +8,11 @@
 
 namespace evod::experiments {
 base::Result<std::string> load_text(const std::string& path, const std::string& kind) {
-    return files::read_file(path, kind, files::experiment_bytes_max);
+    auto text = files::read_file(path, kind, files::experiment_bytes_max);
+    if (text && text->starts_with("\xef\xbb\xbf")) { // a byte order mark, which editors may write
+        text->erase(0, 3);
+    }
+    return text;
 }
 
 base::Result<parameters::Experiment> load_experiment(const std::string& path) {
@@ -45,7 +49,8 @@ base::Result<parameters::Experiment> with_changes(parameters::Experiment experim
         if (value) {
             assignments.push_back({name, std::move(*value)});
         } else {
-            violations.push_back({"--set " + name, description->allowed(), text});
+            const base::Refusal refused = value.error();
+            violations.push_back({"--set " + name, refused.violations[0].allowed, refused.violations[0].got});
         }
     }
     base::Result<parameters::Parameters> changed = parameters::assign(experiment.parameters, assignments, "--set ");

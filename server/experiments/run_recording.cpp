@@ -3,6 +3,7 @@
 #include "server/base/assert.h"
 #include "server/run_file/check.h"
 #include "server/run_file/data_folder.h"
+#include "server/simulation/founders.h"
 #include "server/simulation/world_name.h"
 
 #include <algorithm>
@@ -16,10 +17,11 @@ using base::RefusalCode;
 using base::Result;
 using run_file::RunFile;
 
-bool are_equal(const simulation::FirstPopulation& a, const simulation::FirstPopulation& b) {
-    return a == b || (a && b && std::ranges::equal(*a, *b, [](const auto& one, const auto& other) {
-                          return one.rows() == other.rows() && one.cols() == other.cols() && (one == other).all();
-                      }));
+/// Returns whether the stored population is the given one with its places filled.
+bool begins_with(const simulation::FirstPopulation& there, const simulation::FirstPopulation& given,
+                 const parameters::Parameters& parameters, base::Seed seed) {
+    return simulation::same(there, given) || simulation::same(there, simulation::completed(given, parameters, seed)) ||
+           simulation::same(there, simulation::completed(given, parameters, seed, simulation::Filling::Clones));
 }
 
 /// Lists how the stored run differs from the requested one: "population_size is 50, not 60; its seed is 3, not 4".
@@ -37,7 +39,7 @@ std::string differences_of(const run_file::RunIdentity& there, const parameters:
     if (!(there.schedule == wanted.schedule)) {
         add("its schedule of parameters is another one");
     }
-    if (!are_equal(there.first_population, first_population)) {
+    if (!begins_with(there.first_population, first_population, there.parameters, there.seed)) {
         add("its first population is another one");
     }
     return text;
@@ -57,6 +59,16 @@ std::optional<base::Refusal> refusal_of(RunFile& file, const parameters::Experim
     }
     if (file.journal().last_number() > 0) {
         return refused(" contains commands of clients, so only a server can continue it: name another file");
+    }
+    parameters::Parameters longer = file.identity().parameters;
+    longer.generation_limit = experiment.parameters.generation_limit;
+    if (longer == experiment.parameters && !(longer == file.identity().parameters)) {
+        return refused(" contains another run: its generation_limit is " +
+                       std::to_string(file.identity().parameters.generation_limit) + ", not " +
+                       std::to_string(longer.generation_limit) +
+                       "; to add generations to it, move the file into an empty folder, start evod --data FOLDER, and "
+                       "enter evoctl set generation_limit=" +
+                       std::to_string(longer.generation_limit) + " and evoctl start; or name another file");
     }
     if (const std::string text = differences_of(file.identity(), experiment, first_population); !text.empty()) {
         return refused(" contains another run: " + text + "; name another file, or continue with the same values");
@@ -127,6 +139,7 @@ Result<void> RunRecording::examine(const parameters::Experiment& experiment,
 Result<void> RunRecording::read_part(RunFile& file) {
     const std::uint64_t last = file.generations().last();
     seed_ = file.identity().seed;
+    first_population_ = file.identity().first_population;
     generations_ended_ = file.generations().last_ended();
     const auto over = is_over(file, last);
     if (!over) {

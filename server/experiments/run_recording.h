@@ -31,7 +31,8 @@ class RunRecording {
     /// Opens the run file of a run; it need not exist. A refusal leaves the file unchanged. Refused if the file is no
     /// run file, is damaged, is being written, or contains another run than that of this experiment.
     ///
-    /// experiment  if it has no seed, the file may have any.
+    /// experiment        if it has no seed, the file may have any.
+    /// first_population  may have fewer organisms than the world has places; the file then begins with these.
     static base::Result<std::unique_ptr<RunRecording>> open(std::string path, const parameters::Experiment& experiment,
                                                             const simulation::FirstPopulation& first_population);
 
@@ -39,6 +40,8 @@ class RunRecording {
     Stored stored() const { return stored_; }
     /// The seed of the stored run; nullopt if nothing is stored.
     std::optional<base::Seed> seed() const;
+    /// The first population of the stored run, with all its places filled. Only if something is stored.
+    const simulation::FirstPopulation& first_population() const { return first_population_; }
     /// The generation at whose beginning a run continues. Only if a part of it is stored.
     std::uint64_t continues_at() const { return begun_.opening.moment.generation; }
     /// The world at the beginning of that generation; called once. Its history is empty.
@@ -81,6 +84,7 @@ class RunRecording {
     std::unique_ptr<run_file::RunFile> file_; // nullptr before begin() and after close()
     Stored stored_ = Stored::Nothing;
     base::Seed seed_{};
+    simulation::FirstPopulation first_population_;
     run_file::GenerationBegun begun_; // the beginning of the generation at which the run continues
     std::uint64_t generations_ended_ = 0;
     std::vector<run_file::HashRecord> hashes_; // stored hashes of that generation

@@ -3,6 +3,7 @@
 #include "proto/text/suggestion.h"
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/sweep_design.h"
+#include "server/experiments/trials.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -29,6 +30,9 @@ struct SweepMembers {
     std::vector<const JsonMember*> designs;
     std::optional<std::uint32_t> generations, replicates;
     std::optional<std::uint64_t> seed;
+    std::optional<std::uint32_t> every;
+    const JsonMember* seeds = nullptr;
+    bool skip_invalid = false;
 };
 
 template <class Number>
@@ -45,8 +49,9 @@ void read_whole_number(const JsonMember& member, std::uint64_t least, std::uint6
 
 /// Returns the members that are allowed instead of an unknown one, and which of them the author may have meant.
 std::string members_instead_of(const std::string& name) {
-    static constexpr std::string_view members[] = {"description",     "experiment", "grid", "list",
-                                                   "latin_hypercube", "replicates", "seed", "generations"};
+    static constexpr std::string_view members[] = {"description",     "experiment", "grid",        "list",
+                                                   "latin_hypercube", "replicates", "seed",        "seeds",
+                                                   "generations",     "every",      "skip_invalid"};
     std::string allowed, meant;
     for (const std::string_view member : members) {
         allowed += (allowed.empty() ? "" : ", ") + std::string{member};
@@ -75,7 +80,20 @@ SweepMembers read_members(const JsonNode& document, SweepErrors& errors) {
         } else if (name == "generations") {
             read_whole_number(*member, 1, base::count_max, members.generations, errors);
         } else if (name == "seed") {
+            if (member->value.is_array()) {
+                errors.add(name, member->value, "one whole number; the member \"seeds\" gives each replicate its seed");
+                continue;
+            }
             read_whole_number(*member, 0, ~std::uint64_t{0}, members.seed, errors);
+        } else if (name == "seeds") {
+            members.seeds = member;
+        } else if (name == "every") {
+            read_whole_number(*member, 1, base::count_max, members.every, errors);
+        } else if (name == "skip_invalid") {
+            members.skip_invalid = member->value.text == "true";
+            if (!members.skip_invalid && member->value.text != "false") {
+                errors.add(name, member->value, "true or false");
+            }
         } else if (name != "description") {
             errors.add(parameters::with_line(name, member->line), members_instead_of(name), base::unknown_name);
         } else if (!member->value.is_string()) {
@@ -92,6 +110,29 @@ SweepMembers read_members(const JsonNode& document, SweepErrors& errors) {
                    "one of grid, list, latin_hypercube", got.empty() ? "none of them" : got);
     }
     return members;
+}
+
+/// Reads the seeds of the replicates, which also determine the number of replicates.
+void read_seeds(const SweepMembers& members, Sweep& sweep, SweepErrors& errors) {
+    const JsonNode& list = members.seeds->value;
+    if (!list.is_array() || list.elements.empty() || list.elements.size() > Sweep::runs_max) {
+        return errors.add("seeds", list, "a list of seeds, one for each replicate: [11, 12]");
+    }
+    for (const JsonNode& element : list.elements) {
+        const auto seed = element.whole_number();
+        if (!seed) {
+            errors.add("seeds", element, "whole numbers, 0 to " + std::to_string(~std::uint64_t{0}));
+        } else if (std::ranges::find(sweep.seeds, base::Seed{*seed}) != sweep.seeds.end()) {
+            errors.add("seeds", element, "each seed once");
+        } else {
+            sweep.seeds.push_back({*seed});
+        }
+    }
+    if (members.replicates && *members.replicates != list.elements.size()) {
+        errors.add("replicates", "no value, or " + std::to_string(list.elements.size()) + ", the number of seeds",
+                   std::to_string(*members.replicates));
+    }
+    sweep.replicates = static_cast<std::uint32_t>(list.elements.size());
 }
 
 /// Adds the experiment to the sweep, or its errors with `prefix` before each field name.
@@ -153,32 +194,58 @@ void check_ends(const Sweep& sweep, SweepErrors& errors) {
     }
 }
 
-/// Checks that the values of each cell are consistent with each other and with the schedule.
+/// Checks that the values of a cell are consistent with each other and with the schedule.
+void check_cell(const Sweep& sweep, std::size_t cell, SweepErrors& errors) {
+    const Parameters parameters = sweep.parameters_of(cell);
+    auto faults = parameters::validate(parameters);
+    if (auto fault = fault_without_network(parameters)) {
+        faults.push_back(*std::move(fault));
+    }
+    for (const Violation& fault : faults) {
+        errors.add(cell_prefix(sweep, cell) + fault.field, fault.allowed, fault.got);
+    }
+    if (!faults.empty()) {
+        return;
+    }
+    for (const auto& [generation, fault] : parameters::faults_of(sweep.schedule_of(cell), parameters)) {
+        errors.add(cell_prefix(sweep, cell) + fault.field + " at generation " + std::to_string(generation),
+                   fault.allowed, fault.got);
+    }
+}
+
 void check_cells(const Sweep& sweep, SweepErrors& errors) {
     for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
-        const Parameters parameters = sweep.parameters_of(cell);
-        auto faults = parameters::validate(parameters);
-        if (auto fault = fault_without_network(parameters)) {
-            faults.push_back(*std::move(fault));
-        }
-        for (const Violation& fault : faults) {
-            errors.add(cell_prefix(sweep, cell) + fault.field, fault.allowed, fault.got);
-        }
-        if (!faults.empty()) {
-            continue;
-        }
-        for (const auto& [generation, fault] : parameters::faults_of(sweep.schedule_of(cell), parameters)) {
-            errors.add(cell_prefix(sweep, cell) + fault.field + " at generation " + std::to_string(generation),
-                       fault.allowed, fault.got);
-        }
+        check_cell(sweep, cell, errors);
     }
     check_ends(sweep, errors);
+}
+
+/// Leaves out the cells whose values are impossible together, unless all of them are. The other cells are numbered
+/// from 0 again.
+void skip_invalid_cells(Sweep& sweep) {
+    std::vector<std::vector<parameters::ParameterValue>> valid;
+    for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
+        SweepErrors errors;
+        check_cell(sweep, cell, errors);
+        if (errors.violations.empty()) {
+            valid.push_back(sweep.cells[cell]);
+        } else {
+            sweep.skipped.push_back(base::to_text(errors.violations.front()));
+        }
+    }
+    if (!valid.empty()) {
+        sweep.cells = std::move(valid);
+    }
 }
 
 Sweep read_sweep(const JsonNode& document, const LoadExperiment& load, SweepErrors& errors) {
     const SweepMembers members = read_members(document, errors);
     Sweep sweep;
     sweep.replicates = members.replicates.value_or(1);
+    sweep.every = members.every.value_or(1);
+    if (members.seeds != nullptr) {
+        read_seeds(members, sweep, errors);
+    }
     if (members.experiment != nullptr) {
         read_experiment_member(members.experiment->value, load, sweep, errors);
     }
@@ -200,6 +267,9 @@ Sweep read_sweep(const JsonNode& document, const LoadExperiment& load, SweepErro
         for (const ParameterDescription* parameter : sweep.swept) {
             sweep.schedule.remove(parameter->name); // the value in the cell applies to all generations
         }
+        if (members.skip_invalid) {
+            skip_invalid_cells(sweep);
+        }
         check_cells(sweep, errors);
     }
     return sweep;
@@ -216,6 +286,10 @@ base::Refusal refusal_of(std::vector<Violation> violations) {
 }
 
 } // namespace
+
+base::Seed Sweep::seed_of(std::uint32_t replicate) const {
+    return seeds.empty() ? replicate_seed(seed, replicate) : seeds[replicate];
+}
 
 Parameters Sweep::parameters_of(std::size_t cell) const {
     Parameters of_cell = parameters;

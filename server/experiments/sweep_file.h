@@ -28,10 +28,14 @@ struct Sweep {
     parameters::Schedule schedule;     // schedule of the experiment, without the swept parameters
     base::Seed seed{1};
     std::uint32_t replicates = 1;
+    std::vector<base::Seed> seeds;    // the seed of each replicate; empty: derived from `seed`
+    std::uint32_t every = 1;          // the table contains every n-th generation of a run, and its last one
+    std::vector<std::string> skipped; // why cells were left out; only if the file has "skip_invalid": true
     std::vector<const parameters::ParameterDescription*> swept; // in the order in which the file names them
     std::vector<std::vector<parameters::ParameterValue>> cells; // shape (cells, swept)
 
     std::size_t run_count() const { return cells.size() * replicates; }
+    base::Seed seed_of(std::uint32_t replicate) const;
     /// The parameters of a cell. They are valid and contain a criterion that ends the run.
     parameters::Parameters parameters_of(std::size_t cell) const;
     /// Returns the schedule of a cell. parse_sweep() has checked that it is valid.

@@ -99,6 +99,52 @@ base::Refusal other_sweep_refusal(const std::string& path, const std::string& th
     return refused;
 }
 
+/// Returns the sweep whose sweep.txt is given; nullopt if the text is damaged, or that sweep has another build, model,
+/// experiment or seed than `sweep`.
+std::optional<Sweep> sweep_in(const std::string& there, const Sweep& sweep) {
+    for (const ProvenanceEntry& entry : provenance_entries(sweep)) {
+        if (entry.name != "runs" && entry.name != "sweep file" &&
+            there.find("\n" + to_text(entry)) == std::string::npos) {
+            return std::nullopt;
+        }
+    }
+    constexpr std::string_view name = "\n# sweep file: ", indent = "\n#   ";
+    const std::size_t begin = there.find(name);
+    if (begin == std::string::npos) {
+        return std::nullopt;
+    }
+    std::string text = there.substr(begin + name.size());
+    for (std::size_t at = 0; (at = text.find(indent, at)) != std::string::npos; ++at) {
+        text.replace(at, indent.size(), "\n");
+    }
+    // The entries have shown that its experiment is the same.
+    auto read = parse_sweep(text, [&](const std::string&) {
+        return parameters::Experiment{
+            .parameters = sweep.parameters, .schedule = sweep.schedule, .seed = sweep.seed, .description = {}};
+    });
+    return read ? std::optional{*std::move(read)} : std::nullopt;
+}
+
+/// Whether the runs of `smaller` are some of the runs of `sweep`, with the same cells and replicates.
+bool is_part_of(const Sweep& smaller, const Sweep& sweep) {
+    if (smaller.swept != sweep.swept || smaller.every != sweep.every || smaller.cells.size() > sweep.cells.size() ||
+        smaller.run_count() == sweep.run_count() || smaller.replicates > sweep.replicates) {
+        return false;
+    }
+    for (std::uint32_t replicate = 0; replicate < smaller.replicates; ++replicate) {
+        if (!(smaller.seed_of(replicate) == sweep.seed_of(replicate))) {
+            return false;
+        }
+    }
+    for (std::size_t cell = 0; cell < smaller.cells.size(); ++cell) {
+        if (smaller.cells[cell] != sweep.cells[cell] || !(smaller.parameters_of(cell) == sweep.parameters_of(cell)) ||
+            !(smaller.schedule_of(cell) == sweep.schedule_of(cell))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 std::string padded(std::size_t number, std::size_t count) {
     const std::string text = std::to_string(number);
     return std::string(std::to_string(count - 1).size() - text.size(), '0') + text;
@@ -189,7 +235,7 @@ std::vector<std::string> sweep_columns(const Sweep& sweep) {
     return columns;
 }
 
-Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& sweep) {
+Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& sweep, Extension extension) {
     const std::string of_sweep = path + "/sweep.txt", provenance = provenance_of(sweep);
     std::error_code error;
     // Another task may be creating these files, sweep.txt before its results. So this function looks for results before
@@ -220,12 +266,50 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
         return there.error();
     }
     if (*there != provenance) {
-        return other_sweep_refusal(path, *there, sweep);
+        const auto smaller = sweep_in(*there, sweep);
+        if (!smaller || !is_part_of(*smaller, sweep)) {
+            base::Refusal refused = other_sweep_refusal(path, *there, sweep);
+            if (smaller) {
+                refused.message += ". A sweep in the same folder can get more replicates or seeds, and more values at "
+                                   "the end of a list or of the first parameter of a grid";
+            }
+            return refused;
+        }
+        if (extension == Extension::Refused) {
+            return refusal(RefusalCode::FailedPrecondition,
+                           path + " contains a smaller sweep: extend it with one command without --array-index, which "
+                                  "may be interrupted at once");
+        }
+        if (auto extended = SweepFolder{path, sweep}.extend(*smaller); !extended) {
+            return extended.error();
+        }
     }
     if (auto created = create_folder(path + "/parts"); !created) {
         return created.error();
     }
     return SweepFolder{path, sweep};
+}
+
+/// Renames the files of finished runs whose numbers get more digits, then replaces sweep.txt. After an interruption the
+/// next call does the rest, because a file that already has its new name is not found under the old one.
+Result<void> SweepFolder::extend(const Sweep& smaller) const {
+    const SweepFolder before{path_, smaller};
+    for (std::size_t run = 0; run < smaller.run_count(); ++run) {
+        const std::size_t here = run / smaller.replicates * sweep_->replicates + run % smaller.replicates;
+        for (const auto& [from, to] :
+             {std::pair{before.part_of(run), part_of(here)}, std::pair{before.run_file_of(run), run_file_of(here)}}) {
+            std::error_code error;
+            if (from != to && fs::exists(from, error)) {
+                fs::rename(from, to, error);
+            }
+            if (error) {
+                return refusal(RefusalCode::Unavailable, "cannot rename " + from + ": " + error.message());
+            }
+        }
+    }
+    AtomicFile file{path_ + "/sweep.txt"};
+    file.write(provenance_of(*sweep_));
+    return file.finish();
 }
 
 std::string SweepFolder::name_of(std::size_t run) const {

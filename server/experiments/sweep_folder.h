@@ -40,11 +40,18 @@ std::string_view name_of(evolution::Outcome outcome);
 
 class SweepFolder {
   public:
-    /// Creates the folder, or opens it to resume the sweep. Refused if it contains results of another sweep, or of
-    /// another build of evod.
+    /// Whether a sweep may continue the finished runs of a smaller one: the same experiment and seeds, whose cells and
+    /// replicates are the first ones of the larger sweep.
+    enum class Extension {
+        Allowed, // only for one process at a time, because finished parts may be renamed
+        Refused,
+    };
+    /// Creates the folder, or opens it to resume or extend the sweep. Refused if it contains results of another sweep,
+    /// or of another build of evod.
     ///
     /// sweep  must outlive the SweepFolder.
-    static base::Result<SweepFolder> open(const std::string& path, const Sweep& sweep);
+    static base::Result<SweepFolder> open(const std::string& path, const Sweep& sweep,
+                                          Extension extension = Extension::Allowed);
 
     /// The name of a run and of its world: "cell-07-replicate-2".
     std::string name_of(std::size_t run) const;
@@ -69,6 +76,7 @@ class SweepFolder {
     SweepFolder(std::string path, const Sweep& sweep) : path_{std::move(path)}, sweep_{&sweep} {}
     base::Result<void> add_part(std::size_t run, AtomicFile& table, Gathered& gathered) const;
     void remove_temporary_files() const;
+    base::Result<void> extend(const Sweep& smaller) const;
 
     std::string path_;
     const Sweep* sweep_;

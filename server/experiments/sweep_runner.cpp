@@ -118,7 +118,7 @@ Result<std::optional<RunEnd>> execute_run(const Sweep& sweep, std::size_t run, c
     const double generation_work = expected ? work_of_generation(parameters) : 0;
     double done = 0;
     simulation::World world{
-        parameters, replicate_seed(sweep.seed, static_cast<std::uint32_t>(replicate)), {}, sweep.schedule_of(cell)};
+        parameters, sweep.seed_of(static_cast<std::uint32_t>(replicate)), {}, sweep.schedule_of(cell)};
     std::optional<RunWriter> writer;
     if (!files.run_file.empty()) {
         writer.emplace(files.run_file, files.name, options.draw_run_id(), world);
@@ -145,8 +145,11 @@ Result<std::optional<RunEnd>> execute_run(const Sweep& sweep, std::size_t run, c
             }
         } while (!world.generation_over());
         world.take_events();
-        write_generation(table, sweep, run, world);
-        end.rows += world.history().back().size();
+        const bool last = world.outcome() != evolution::Outcome::Running;
+        if (last || world.history().back().front().generation % sweep.every == 0) {
+            write_generation(table, sweep, run, world);
+            end.rows += world.history().back().size();
+        }
         part.write(rows.str());
         rows.str({});
         done += generation_work;

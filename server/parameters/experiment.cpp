@@ -75,7 +75,10 @@ class ValuesByGeneration {
     void read(const JsonMember& member) {
         const auto generation = generation_of(member.name);
         if (!generation) {
-            return refuse(name_, member.line, {{}, R"(generations as keys: "1", "30", …)", '"' + member.name + '"'});
+            return refuse(name_, member.line,
+                          {{},
+                           R"(generations as keys: "1", "30", …; there is no period, so list each generation)",
+                           '"' + member.name + '"'});
         }
         auto value = parameter_value_of(member.value);
         if (!value) {

@@ -17,6 +17,62 @@ json::string_view view_of(std::string_view text) {
     return {text.data(), text.size()};
 }
 
+/// Removes a byte order mark at the beginning, which editors and spreadsheet programs write.
+std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
+/// Returns what the author of a faulty text probably has to change; an empty text if the cause is unknown.
+///
+/// at  index of the first character that no JSON text can have there.
+std::string likely_cause(std::string_view text, std::size_t at) {
+    const auto is_digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+    const std::size_t before = text.substr(0, at).find_last_not_of(" \t\r\n");
+    const bool after_comma = before != std::string_view::npos && text[before] == ',';
+    const char c = at < text.size() ? text[at] : '\0';
+    if ((c == '}' || c == ']') && after_comma) {
+        return std::string{"remove the comma before "} + c;
+    }
+    if (c == '/' || c == '#') {
+        return "JSON has no comments: remove the comment, or use \"description\"";
+    }
+    if (c == '\'' || text.substr(at).starts_with("\xe2\x80\x9c") || text.substr(at).starts_with("\xe2\x80\x9e")) {
+        return "write names and texts in straight double quotes: \"selection\"";
+    }
+    if (is_digit(at) && after_comma && before > 0 && is_digit(before - 1)) {
+        return "write a point in a decimal number: 0.5";
+    }
+    if (c == 'T' || c == 'F' || c == 'N') {
+        return "write true, false and null in lower case, and names in double quotes";
+    }
+    if (c == '"' && before != std::string_view::npos && !after_comma && text[before] != ':') {
+        return "a comma may be missing before it";
+    }
+    return c >= 'a' && c <= 'z' ? "write names and texts in double quotes: \"selection\"" : "";
+}
+
+/// Returns, for example, `line 3, column 7: syntax error at "}"; remove the comma before }`.
+std::string json_fault(std::string_view text, std::size_t at, const std::string& error) {
+    at = std::min(at, text.size());
+    const std::string_view before = text.substr(0, at);
+    const std::size_t line = 1 + static_cast<std::size_t>(std::ranges::count(before, '\n'));
+    const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1; // npos + 1 is 0
+    std::string fault = "line " + std::to_string(line) + ", column " + std::to_string(column) + ": " + error;
+    constexpr std::size_t shown_max = 20;
+    std::string_view rest = text.substr(at);
+    rest = rest.substr(0, rest.find_first_of("\r\n"));
+    if (rest.size() > shown_max) {
+        rest = rest.substr(0, shown_max);
+        while (!rest.empty() && (static_cast<unsigned char>(text[at + rest.size()]) & 0xc0) == 0x80) {
+            rest.remove_suffix(1); // a character is shown whole or not at all
+        }
+    }
+    fault += rest.empty() ? "" : " at " + std::string{rest};
+    const std::string cause = likely_cause(text, at);
+    return fault + (cause.empty() ? "" : "; " + cause);
+}
+
 /// Checks the text with Boost.JSON, which also limits how deeply values are nested. JsonPlaces relies on both.
 base::Result<void> check_json(std::string_view text) {
     json::stream_parser parser;
@@ -29,9 +85,8 @@ base::Result<void> check_json(std::string_view text) {
         parser.finish(error);
     }
     if (error) {
-        const auto line = 1 + std::ranges::count(text.substr(0, read), '\n');
         return base::refusal(base::RefusalCode::InvalidArgument,
-                             "not JSON: line " + std::to_string(line) + ": " + error.message());
+                             "not JSON: " + json_fault(text, read, error.message()));
     }
     return {};
 }
@@ -118,7 +173,16 @@ std::string JsonNode::string() const {
 }
 
 std::optional<std::uint64_t> JsonNode::whole_number() const {
-    return text == "-0" ? std::optional<std::uint64_t>{0} : number_in<std::uint64_t>(text);
+    if (text == "-0") {
+        return 0;
+    }
+    if (const auto digits = number_in<std::uint64_t>(text)) {
+        return digits;
+    }
+    // Programs such as R and NumPy write 30.0 or 1e3. A double below 2^53 is exact.
+    const auto number = is_number() ? number_in<double>(text) : std::nullopt;
+    const bool whole = number && *number > 0 && *number < 0x1p53 && *number == std::floor(*number);
+    return whole ? std::optional{static_cast<std::uint64_t>(*number)} : std::nullopt;
 }
 
 double JsonNode::real() const {
@@ -141,6 +205,7 @@ std::string JsonNode::quoted() const {
 }
 
 base::Result<JsonNode> parse_json(std::string_view text) {
+    text = without_mark(text);
     if (const auto checked = check_json(text); !checked) {
         return checked.error();
     }

@@ -33,8 +33,8 @@ struct JsonNode {
     const JsonMember* find(std::string_view name) const;
     /// Returns the characters of a string, with escapes decoded.
     std::string string() const;
-    /// Returns the exact value of a number written in digits only; nullopt for other values and for numbers out of
-    /// range.
+    /// Returns the exact value of a whole number. It may also be written as 30.0 or 1e3, then below 2^53. Returns
+    /// nullopt for other values and for numbers out of range.
     std::optional<std::uint64_t> whole_number() const;
     /// Returns the double nearest to a number: infinity or 0 if the number is beyond the range of double.
     double real() const;
@@ -47,7 +47,7 @@ struct JsonMember {
     JsonNode value;
 };
 
-/// Parses a text that must contain exactly one JSON value. Errors name the line: "not JSON: line 3: …".
+/// Parses a text of one JSON value, after a byte order mark or none. Errors: "not JSON: line 3, column 1: … at }; …".
 base::Result<JsonNode> parse_json(std::string_view text);
 
 /// Returns, for example, "mutation_chance (line 4)".

@@ -3,6 +3,7 @@
 #include "proto/text/number_text.h"
 #include "proto/text/suggestion.h"
 #include "server/base/elementary.h"
+#include "server/base/exact_number.h"
 #include "server/base/overloaded.h"
 #include "server/evolution/brain_layout.h"
 #include "server/evolution/gene_layout.h"
@@ -59,6 +60,12 @@ std::vector<ParameterDescription> make_registry() {
     return registry;
 }
 
+/// Returns a value that is not allowed, for a message. The name of a choice is shown without quotation marks.
+std::string quoted_unless_choice(const ParameterDescription& description, std::string_view text) {
+    const bool is_choice = std::holds_alternative<ChoiceParameter>(description.kind);
+    return is_choice ? std::string{text} : '"' + std::string{text} + '"';
+}
+
 /// Sets one parameter, or returns what is wrong with the value.
 std::optional<base::Violation> set_value(const ParameterDescription& description, const ParameterValue& value,
                                          Parameters& parameters, std::string field) {
@@ -109,7 +116,12 @@ std::optional<base::Violation> set_value(const ParameterDescription& description
     if (done) {
         return std::nullopt;
     }
-    return base::Violation{std::move(field), description.allowed(), to_text(value)};
+    const auto* text = std::get_if<std::string>(&value);
+    const bool number_as_text = text != nullptr && !std::holds_alternative<ChoiceParameter>(description.kind) &&
+                                parse_value(description, *text);
+    return base::Violation{std::move(field),
+                           description.allowed() + (number_as_text ? "; write it without quotation marks" : ""),
+                           text != nullptr ? quoted_unless_choice(description, *text) : to_text(value)};
 }
 
 /// Returns an upper bound on the share of an island in which the centre of a new body cannot be placed, if every
@@ -256,12 +268,35 @@ base::Result<RequestedParameters> assign(const RequestedParameters& requested, s
     return RequestedParameters{*assigned};
 }
 
+namespace {
+
+/// Returns what the author of a value that cannot be read probably has to change, after a semicolon; an empty text if
+/// the cause is unknown.
+std::string hint_about(const ParameterDescription& description, std::string_view text) {
+    const bool is_number = std::holds_alternative<RealParameter>(description.kind) ||
+                           std::holds_alternative<CountParameter>(description.kind);
+    std::string changed{text};
+    std::ranges::replace(changed, ',', '.');
+    double value;
+    const char* const end = changed.data() + changed.size();
+    if (is_number && changed != text && std::from_chars(changed.data(), end, value).ptr == end) {
+        return "; write a decimal point: " + changed;
+    }
+    changed = text;
+    std::ranges::transform(changed, changed.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
+    return !is_number && changed != text ? "; write it in lower case" : "";
+}
+
+} // namespace
+
 base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text) {
     const char* end = text.data() + text.size();
     const auto refused = [&]() -> base::Result<ParameterValue> {
-        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
-                             .message = "cannot read the value of " + std::string{description.name},
-                             .violations = {{std::string{description.name}, description.allowed(), std::string{text}}}};
+        return base::Refusal{
+            .code = base::RefusalCode::InvalidArgument,
+            .message = "cannot read the value of " + std::string{description.name},
+            .violations = {{std::string{description.name}, description.allowed() + hint_about(description, text),
+                            quoted_unless_choice(description, text)}}};
     };
     return std::visit(Overloaded{[&](const RealParameter&) -> base::Result<ParameterValue> {
                                      double value;
@@ -272,12 +307,13 @@ base::Result<ParameterValue> parse_value(const ParameterDescription& description
                                      return ParameterValue{value};
                                  },
                                  [&](const CountParameter&) -> base::Result<ParameterValue> {
-                                     std::uint32_t value;
+                                     double value; // 30.0 and 1e3 are whole numbers, too
                                      const auto read = std::from_chars(text.data(), end, value);
                                      if (read.ec != std::errc{} || read.ptr != end) {
                                          return refused();
                                      }
-                                     return ParameterValue{value};
+                                     const auto whole = base::whole_number_of(value);
+                                     return whole ? ParameterValue{*whole} : refused();
                                  },
                                  [&](const FlagParameter&) -> base::Result<ParameterValue> {
                                      if (text != "true" && text != "false") {

@@ -8,6 +8,7 @@
 #include "server/protocol/populations.h"
 #include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
+#include "server/simulation/founders.h"
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world_name.h"
 
@@ -39,6 +40,14 @@ bool has_too_many_assignments(int assignments, std::string field, Violations& vi
     return true;
 }
 
+/// Whether the founders that a request lacks are drawn. The network thread draws them, so there must not be many.
+bool may_be_filled(const parameters::Parameters& parameters) {
+    constexpr double genes_max = 1'000'000;
+    return static_cast<double>(parameters.island_count) * parameters.population_size *
+               evolution::gene_count(parameters) <=
+           genes_max;
+}
+
 simulation::Command command_of(const v1::CreateWorld& request, const Draws& draws, Violations& violations) {
     if (!simulation::is_world_name(request.name())) {
         violations.push_back(
@@ -58,6 +67,10 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
         }
         if (found.empty()) {
             command.first_population = first_population_of(request, command.parameters, found);
+            if (may_be_filled(command.parameters)) {
+                command.first_population =
+                    simulation::completed(command.first_population, command.parameters, command.seed);
+            }
             const auto faults =
                 simulation::faults_of(command.first_population, command.parameters, "create_world.population");
             found.insert(found.end(), faults.begin(), faults.end());

@@ -2,6 +2,7 @@
 
 #include "server/protocol/experiment_summary.h"
 
+#include "server/base/exact_number.h"
 #include "server/parameters/choice_help.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/refusals.h"
@@ -25,9 +26,14 @@ v1::ParameterEffect to_proto(base::Effect effect) {
     return v1::PARAMETER_EFFECT_UNSPECIFIED;
 }
 
+/// A client may send a whole number as a real one, as NumPy and JavaScript have it. The registry decides which kind the
+/// parameter has, and accepts a count for both.
 parameters::ParameterValue to_value(const v1::ParameterValue& value) {
     switch (value.kind_case()) {
     case v1::ParameterValue::kReal:
+        if (const auto count = base::whole_number_of(value.real())) {
+            return *count;
+        }
         return value.real();
     case v1::ParameterValue::kCount:
         return value.count();

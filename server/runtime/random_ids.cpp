@@ -1,5 +1,7 @@
 #include "server/runtime/random_ids.h"
 
+#include "server/base/exact_number.h"
+
 #include <random>
 
 namespace evod::runtime {
@@ -14,7 +16,7 @@ std::uint64_t draw() {
 } // namespace
 
 base::Seed draw_seed() {
-    return {draw()};
+    return base::portable_seed(draw());
 }
 
 simulation::RunId draw_run_id() {

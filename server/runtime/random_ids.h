@@ -9,7 +9,7 @@
 
 namespace evod::runtime {
 
-base::Seed draw_seed();
+base::Seed draw_seed(); // below 2^53: base::portable_seed()
 simulation::RunId draw_run_id();
 
 } // namespace evod::runtime

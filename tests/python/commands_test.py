@@ -172,8 +172,17 @@ class Commands(unittest.TestCase):
         world = self.lab.create_world("given", {"population_size": 4}, population=[genes])
         numpy.testing.assert_array_equal(world.population().genes, genes.astype("f4"))
         world.delete()
-        self.refused(lambda: self.lab.create_world("given", {"population_size": 4}, population=[genes[:3]]),
+        self.refused(lambda: self.lab.create_world("given", {"population_size": 3}, population=[genes]),
                      "population[0]")
+
+    def test_a_world_may_begin_with_fewer_organisms(self):
+        drawn = self.lab.create_world("drawn", {"population_size": numpy.float64(4)}, seed=numpy.int64(5))
+        genes = numpy.full((2, 6), 100.0)
+        world = self.lab.create_world("few", {"population_size": numpy.float64(4)}, seed=5, population=[genes])
+        numpy.testing.assert_array_equal(world.population().genes[:2], genes)
+        numpy.testing.assert_array_equal(world.population().genes[2:], drawn.population().genes[2:])
+        world.delete()
+        drawn.delete()
 
     def test_many_threads_share_a_connection(self):
         world = self.lab.create_world("shared", speed="max")

@@ -82,7 +82,7 @@ class Errors(unittest.TestCase):
         printed = "evod: /tmp/a.json: invalid sweep\n  grid.size (line 3): got a, b, allowed x, y\n"
         error = failure(printed, "/tmp/a.json: ")
         self.assertEqual(str(error), "invalid sweep\n  grid.size: got a, b, allowed x, y")
-        error = failure("evod: use --data or --port\n")
+        error = failure("evod: warning: seed 9\nevod: use --data or --port\n")
         self.assertEqual((type(error), str(error)), (evod.ProgramFailed, "use data or port"))
 
 

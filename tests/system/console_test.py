@@ -69,7 +69,7 @@ class Run(Folder):
         # Population, food (twice), poison, time, generations; the rest as proposed.
         answers = "9\nmany\n11\n\n1.5\n1\n" + "\n" * 40
         done = evod("run", "--seed", "1", "--ask", stdin=answers)
-        self.assertIn("food_count: got many, allowed a whole number, 0 to", done.stdout)
+        self.assertIn("food_count: got \"many\", allowed a whole number, 0 to", done.stdout)
         for question in ("population_size", "poison_count", "generation_s", "population_model", "selection",
                          "crossover",
                          "rearranging", "creep", "fitness_scaling", "mutation_chance", "survivors"):
@@ -219,12 +219,44 @@ class Population(Folder):
         other = self.run_with("0,0,100,110,120,130,140,150\n0,1,101.5,90,80,70.25,60,51\n")
         self.assertNotEqual(state(done.stdout), state(other.stdout))
 
+    def test_places_without_an_organism_are_filled(self):
+        one = self.run_with("0,22,100,110,120,130,140,150\n", "--clone-founders")
+        two = self.run_with("0,0,100,110,120,130,140,150\n0,0,100,110,120,130,140,150\n")
+        self.assertEqual(state(one.stdout), state(two.stdout))
+        drawn = self.run_with("0,22,100,110,120,130,140,150\n")
+        self.assertNotEqual(state(drawn.stdout), state(two.stdout))
+        plate = self.file(self.heading + "0,3,100,110,120,130,140,150\n", "other.csv")
+        both = self.run_with("0,7,100,110,120,130,140,150\n", "--population", plate)
+        self.assertEqual(state(both.stdout), state(two.stdout))
+
 
 class Check(Folder):
     def test_a_valid_file_is_described(self):
         done = evod("check", self.file('{"food_count": 3, "seed": 18446744073709551615, "description": "Few meals."}'))
         self.assertIn("valid\nFew meals.", done.stdout)
-        self.assertEqual(json.loads(done.stdout[done.stdout.index("{"):]), {"food_count": 3})
+        text = done.stdout[done.stdout.index("{"):done.stdout.index("warning: ")]
+        self.assertEqual(json.loads(text), {"food_count": 3})
+
+    def test_files_of_windows_and_numpy_are_read(self):
+        path = self.folder.name + "/bom.json"
+        pathlib.Path(path).write_bytes(b'\xef\xbb\xbf{"population_size": 30.0,\r\n "food_count": 1e2}\r\n')
+        self.assertIn('"population_size": 30', evod("check", path).stdout)
+
+    def test_settings_with_which_nothing_evolves_have_warnings(self):
+        for text, word in {
+            '{"elite_count": 50}': "elite_count 50 is not below population_size 50",
+            '{"survivors": 1}': "all organisms survive",
+            '{"body_size_min": 150}': "the same body_size",
+            '{"seed": 9007199254740992}': "2^53",
+        }.items():
+            with self.subTest(text):
+                path = self.file(text)
+                self.assertIn("warning: ", evod("check", path).stdout)
+                self.assertIn(word, evod("check", path).stdout)
+                ran = evod("run", path, "--generations", "1", "--set", "generation_s=0.1", "--set", "tick_s=0.1")
+                self.assertIn("evod: warning: ", ran.stderr)
+                self.assertIn(word, ran.stderr)
+        self.assertNotIn("warning", evod("check", self.file('{"elite_count": 49, "seed": 7}')).stdout)
 
 
 class Image(Folder):

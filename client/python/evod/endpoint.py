@@ -78,7 +78,7 @@ def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> 
         if about.st_mode & 0o077:
             why = "other users can read the file: run chmod 600 on it"
             raise InvalidArgument(f"token_file: {os.fspath(token_file)}: {why}")
-        words = data.decode().split()
+        words = data.decode("utf-8-sig").split()
     except (OSError, UnicodeDecodeError) as error:
         why = str(error.strerror) if isinstance(error, OSError) else "the file is not text"
         raise _unusable(error, f"token_file: {os.fspath(token_file)}: {why}") from None

@@ -7,6 +7,7 @@ import re
 import selectors
 import shutil
 import subprocess
+import warnings
 from typing import IO, Any, Callable, Container, Iterator, Mapping, Sequence
 
 from evod.errors import Error, FileNotFound, InvalidArgument, ProgramFailed, Violation
@@ -16,6 +17,7 @@ _REFUSED_OPTION = re.compile(r"^(?:evod: )?--(?P<field>[a-z-]+): got (?P<got>.*?
 _UNKNOWN = re.compile(
     r"^\s+(?P<field>.+?)(?: \(line \d+\))?: unknown name(?:; did you mean (?P<meant>.*)\?|, allowed (?P<allowed>.*))?$"
 )
+_WARNING = "evod: warning: "
 _SEE_HELP = re.compile(r"^See evod( [a-z]+)? --help$")
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 # the first letters of the variables that mpirun and srun set for their processes
@@ -50,6 +52,8 @@ def failure(output: str, hidden: str = "") -> Error:
     """
     violations, others = [], []
     for line in output.splitlines():
+        if line.startswith(_WARNING):
+            continue
         if found := _REFUSED.match(line) or _REFUSED_OPTION.match(line):
             violations.append(Violation(_argument(found["field"]), found["allowed"], found["got"]))
         elif found := _UNKNOWN.match(line):
@@ -125,6 +129,9 @@ class Program:
                 raise
         if process.returncode not in self._accepted:
             raise failure(printed.decode(errors="replace"), self._hidden)
+        for line in printed.decode(errors="replace").splitlines():
+            if line.startswith(_WARNING):
+                warnings.warn(line[len(_WARNING):], stacklevel=2)
         if self._on_progress:
             self._on_progress(1.0)
         return text.decode(errors="replace")

@@ -53,10 +53,11 @@ TEST(PopulationCsv, FurtherGenesHaveTheirNames) {
     EXPECT_EQ(back->islands, population.islands);
     EXPECT_EQ(back->organism_count(0), 2u);
     EXPECT_THAT(wrong(std::string{population_heading} + ",\n"), StartsWith("line 1: got"));
+    EXPECT_THAT(wrong(std::string{population_heading} + ",a,a\n"), StartsWith("line 1: got"));
     EXPECT_THAT(wrong(std::string{population_heading} + ",a,,b\n"), StartsWith("line 1: got"));
     EXPECT_THAT(wrong(std::string{population_heading} + "x\n"), StartsWith("line 1: got"));
     EXPECT_THAT(wrong(std::string{population_heading} + ",a\n0,0,1,2,3,4,5,6\n"),
-                testing::EndsWith("allowed an island, an organism and 7 genes"));
+                testing::EndsWith("allowed an island, an organism and 7 genes, so 9 cells, not 8"));
 }
 
 TEST(PopulationCsv, ErrorsNameTheLine) {
@@ -65,16 +66,37 @@ TEST(PopulationCsv, ErrorsNameTheLine) {
     EXPECT_THAT(wrong("0,0,1,2,3,4,5,6\n"), StartsWith("line 1: got \"0,0,1"));
     EXPECT_EQ(wrong(heading), "contains no organism");
     for (const char* line : {"0,1,1,2,3,4,5", "0,1,1,2,3,4,5,", "0,1,1,2,3,4,5,6,7", "0,1,1,2,3,4,5,6,",
-                             "0,1,1,2,x,4,5,6", "", "0,-1,1,2,3,4,5,6", "0,1,1,2,3,4,5,1e99"}) {
-        EXPECT_EQ(wrong(good + line + "\n"),
-                  std::string{"line 3: got \""} + line + "\", allowed an island, an organism and 6 genes");
+                             "0,1,1,2,x,4,5,6", "0,-1,1,2,3,4,5,6", "0,1,1,2,3,4,5,1e99"}) {
+        EXPECT_THAT(wrong(good + line + "\n"), StartsWith(std::string{"line 3: got \""} + line +
+                                                          "\", allowed an island, an organism and 6 genes"));
     }
-    for (const char* line : {"0,0,1,2,3,4,5,6", "0,2,1,2,3,4,5,6", "1,1,1,2,3,4,5,6", "2,0,1,2,3,4,5,6"}) {
-        EXPECT_EQ(wrong(good + line + "\n"),
-                  std::string{"line 3: got \""} + line + "\", allowed organism 1 of island 0, or the next island");
+    EXPECT_THAT(wrong(good + "0,1,1,2,x,4,5,6\n"), testing::EndsWith("(column body_size)"));
+    EXPECT_THAT(wrong(good + "0,x,1,2,3,4,5,6\n"), testing::EndsWith("(column organism)"));
+    EXPECT_THAT(wrong(good + "0,1,1,5,2,3,4,5,6\n"), testing::HasSubstr("decimal comma"));
+}
+
+TEST(PopulationCsv, NumbersOfOrganismsAreFree) {
+    const auto read_back = read(heading + "7,22,1,2,3,4,5,6\n3,0,11,2,3,4,5,6\n7,22,21,2,3,4,5,6\n");
+    ASSERT_TRUE(read_back) << read_back.error().what;
+    EXPECT_THAT(read_back->islands,
+                ElementsAre(ElementsAre(11, 2, 3, 4, 5, 6), ElementsAre(1, 2, 3, 4, 5, 6, 21, 2, 3, 4, 5, 6)));
+}
+
+TEST(PopulationCsv, FilesOfSpreadsheetsAndRAreRead) {
+    const std::vector<std::vector<float>> expected{{1.5f, 2, 3, 4, 5, 6, 0.25f}};
+    for (const std::string& text :
+         {"\xef\xbb\xbf" + std::string{population_heading} + ",free0\r\n0, 0, 1.5, 2,3,4,5 ,6,0.25\r\n\r\n",
+          std::string{"organism;island;free0;impulse;normal_speed;body_size;base_health;food_radius;poison_radius\n"
+                      "0;0;0,25;2;1,5;3;4;5;6\n;;;;;;;;\n"},
+          std::string{"\"\",\"island\",\"organism\",\"normal_speed\",\"impulse\",\"body_size\",\"base_health\","
+                      "\"food_radius\",\"poison_radius\",\"free0\"\n\"1\",0,0,1.5,2,3,4,5,6,0.25\n"},
+          std::string{"island\torganism\tnormal_speed\timpulse\tbody_size\tbase_health\tfood_radius\tpoison_radius"
+                      "\tfree0\n0\t0\t1,5\t2\t3\t4\t5\t6\t0.25\n"}}) {
+        const auto population = read(text);
+        ASSERT_TRUE(population) << text << population.error().what;
+        EXPECT_EQ(population->islands, expected) << text;
+        EXPECT_EQ(population->gene_names.at(6), "free0");
     }
-    EXPECT_EQ(wrong(heading + "1,0,1,2,3,4,5,6\n"),
-              "line 2: got \"1,0,1,2,3,4,5,6\", allowed organism 0 of island 0, or the next island");
 }
 
 TEST(PopulationCsv, ErrorsQuoteOnlyTheBeginningOfALine) {

@@ -23,7 +23,7 @@ class PopulationFile : public testing::Test {
     /// further  the names of genes beyond those of the body, each after a comma.
     base::Result<simulation::FirstPopulation> load(const std::string& rows, const std::string& further = "") const {
         std::ofstream{path} << codec::population_heading << further << '\n' << rows;
-        return load_population(path, parameters);
+        return load_population({path}, parameters);
     }
     std::string refusal_of(const std::string& rows) const {
         const auto loaded = load(rows);
@@ -49,17 +49,44 @@ TEST_F(PopulationFile, HasAColumnPerOrganism) {
 }
 
 TEST_F(PopulationFile, NoPathIsNoPopulation) {
-    const auto loaded = load_population("", parameters);
+    const auto loaded = load_population({}, parameters);
     ASSERT_TRUE(loaded);
     EXPECT_EQ(*loaded, nullptr);
 }
 
 TEST_F(PopulationFile, MustFitTheWorld) {
     const std::string one = "0,0,100,101,102,103,104,105\n", two = one + "0,1,110,111,112,113,114,115\n";
-    EXPECT_THAT(refusal_of(one), AllOf(HasSubstr(path), HasSubstr("population")));
+    EXPECT_THAT(refusal_of(two + "0,2,110,111,112,113,114,115\n"), AllOf(HasSubstr(path), HasSubstr("population")));
     EXPECT_THAT(refusal_of(two + "1,0,100,101,102,103,104,105\n"), HasSubstr("population"));
     EXPECT_THAT(refusal_of("0,0,100,101,1e9,103,104,105\n0,1,110,111,112,113,114,115\n"),
                 HasSubstr("population[0].organism[0].body_size"));
+}
+
+TEST_F(PopulationFile, MayLeavePlaces) {
+    const auto loaded = load("0,22,100,101,102,103,104,105\n");
+    ASSERT_TRUE(loaded) << to_text(loaded.error());
+    EXPECT_EQ((*loaded)->front().cols(), 1);
+}
+
+TEST_F(PopulationFile, SeveralFilesArePutTogether) {
+    const std::string other = folder.path() + "/second.csv";
+    std::ofstream{path} << codec::population_heading << "\n0,7,100,101,102,103,104,105\n";
+    std::ofstream{other} << codec::population_heading << "\n0,7,110,111,112,113,114,115\n";
+    const auto loaded = load_population({path, other}, parameters);
+    ASSERT_TRUE(loaded) << to_text(loaded.error());
+    EXPECT_EQ((*loaded)->front()(0, 0), 100);
+    EXPECT_EQ((*loaded)->front()(0, 1), 110);
+    const auto thrice = load_population({path, other, path}, parameters);
+    ASSERT_FALSE(thrice);
+    EXPECT_THAT(to_text(thrice.error()), AllOf(HasSubstr(other), HasSubstr("3 organisms")));
+}
+
+TEST_F(PopulationFile, FreeGenesMayHaveAnyOrder) {
+    parameters.free_genes = 2;
+    const auto loaded = load("0,0,100,101,102,103,104,105,0.25,0.75\n", ",free1,free0");
+    ASSERT_TRUE(loaded) << to_text(loaded.error());
+    EXPECT_EQ((*loaded)->front()(6, 0), 0.75f);
+    EXPECT_EQ((*loaded)->front()(7, 0), 0.25f);
 }
 
 TEST_F(PopulationFile, HasTheGenesOfTheWorld) {
@@ -83,7 +110,7 @@ TEST_F(PopulationFile, HasTheGenesOfTheWorld) {
 TEST_F(PopulationFile, NamesTheFileAndTheLine) {
     EXPECT_THAT(refusal_of("0,0,100,101,102,103,104\n"), AllOf(HasSubstr(path), HasSubstr("line 2")));
     EXPECT_THAT(refusal_of(""), AllOf(HasSubstr(path), HasSubstr("no organism")));
-    const auto missing = load_population(folder.path() + "/none.csv", parameters);
+    const auto missing = load_population({folder.path() + "/none.csv"}, parameters);
     ASSERT_FALSE(missing);
     EXPECT_THAT(missing.error().message, HasSubstr("/none.csv"));
 }

@@ -45,6 +45,45 @@ std::vector<std::string> column(const Sweep& sweep, std::string_view name) {
     return values;
 }
 
+TEST(SweepFile, SeedsMayBeGiven) {
+    const Sweep sweep = sweep_of(R"({"grid": {"food_count": [5, 7]}, "seeds": [11, 12, 13.0], "generations": 3})");
+    EXPECT_EQ(sweep.replicates, 3u);
+    EXPECT_EQ(sweep.seed_of(0), base::Seed{11});
+    EXPECT_EQ(sweep.seed_of(2), base::Seed{13});
+    const auto refused = [](const std::string& members) {
+        return refusal_of(R"({"grid": {"food_count": [5, 7]}, "generations": 3, )" + members + "}");
+    };
+    EXPECT_THAT(refused(R"("seeds": [11, 11])"), HasSubstr("each seed once"));
+    EXPECT_THAT(refused(R"("seeds": [])"), HasSubstr("a list of seeds"));
+    EXPECT_THAT(refused(R"("seeds": [1, 2], "replicates": 3)"), HasSubstr("the number of seeds"));
+    EXPECT_THAT(refused(R"("seed": [11, 12])"), HasSubstr("\"seeds\""));
+}
+
+TEST(SweepFile, ImpossibleCellsCanBeSkipped) {
+    const std::string grid = R"({"experiment": {"selection": "tournament", "tournament_replacement": false},
+        "grid": {"population_size": [10, 50], "tournament_size": [5, 20]}, "generations": 2)";
+    EXPECT_THAT(refusal_of(grid + "}"), HasSubstr("cell 1 (population_size 10, tournament_size 20)"));
+    EXPECT_THAT(refusal_of(grid + R"(, "skip_invalid": false})"), HasSubstr("cell 1"));
+    const Sweep sweep = sweep_of(grid + R"(, "skip_invalid": true})");
+    EXPECT_EQ(sweep.cells.size(), 3u);
+    EXPECT_THAT(column(sweep, "tournament_size"), ElementsAre("5", "5", "20"));
+    ASSERT_EQ(sweep.skipped.size(), 1u);
+    EXPECT_THAT(sweep.skipped[0], HasSubstr("cell 1 (population_size 10, tournament_size 20)"));
+    EXPECT_THAT(refusal_of(R"({"experiment": {"selection": "tournament", "tournament_replacement": false},
+        "grid": {"population_size": [2], "tournament_size": [5, 20]}, "generations": 2, "skip_invalid": true})"),
+                HasSubstr("cell 0"));
+    EXPECT_THAT(refusal_of(grid + R"(, "skip_invalid": 1})"), HasSubstr("true or false"));
+}
+
+TEST(SweepFile, NumbersOfNumPyAreWholeNumbers) {
+    const Sweep sweep = sweep_of(R"({"grid": {"population_size": [10.0, 15.0, 2e1]}, "replicates": 2.0,
+        "generations": 3.0, "every": 2})");
+    EXPECT_THAT(column(sweep, "population_size"), ElementsAre("10", "15", "20"));
+    EXPECT_EQ(sweep.replicates, 2u);
+    EXPECT_EQ(sweep.every, 2u);
+    EXPECT_THAT(refusal_of(R"({"grid": {"population_size": [10.5]}, "generations": 3})"), HasSubstr("got 10.5"));
+}
+
 TEST(SweepFile, AGridHasEveryCombination) {
     const Sweep sweep =
         sweep_of(R"({"grid": {"selection": ["roulette", "tournament"], "mutate_survivors": [true, false],
@@ -173,7 +212,7 @@ TEST(SweepFile, AnExperimentIsLoadedByItsPath) {
 
 TEST(SweepFile, ErrorsNameTheFieldAndItsLine) {
     const std::map<std::string, std::string> wrong{
-        {"{\n\"list\": [{}],\n\"steps\": 3}", "steps (line 3): unknown name, allowed description, experiment, grid"},
+        {"{\n\"list\": [{}],\n\"steps\": 3}", "steps (line 3): unknown name; did you mean seeds?"},
         {"{\n\"list\": [{}],\n\"seed\": 1, \"seed\": 1}", "seed (line 3): got given twice, allowed given once"},
         {R"({"generations": 3})", "grid: got none of them, allowed one of grid, list, latin_hypercube"},
         {"{\"list\": [{}],\n\"grid\": {\"food_count\": [1]}}", "grid (line 2): got list and grid, allowed one of grid"},

@@ -68,6 +68,51 @@ TEST(SweepFolder, OfAnotherSweepIsRefusedWithTheDifferences) {
     EXPECT_THAT(refused(sweep), HasSubstr("sweep.txt"));
 }
 
+/// A grid of the first `cells` counts of food, with seeds of the sweep.
+Sweep growing(int cells, int replicates, const std::string& more = "") {
+    std::string values;
+    for (int cell = 1; cell <= cells; ++cell) {
+        values += (cell > 1 ? ", " : "") + std::to_string(cell);
+    }
+    const auto sweep = parse_sweep(R"({"grid": {"food_count": [)" + values + R"(]}, "replicates": )" +
+                                       std::to_string(replicates) + R"(, "generations": 1)" + more + "}",
+                                   [](const std::string&) { return parameters::Experiment{}; });
+    EXPECT_TRUE(sweep) << to_text(sweep.error());
+    return *sweep;
+}
+
+TEST(SweepFolder, FinishedRunsStayValidInALargerSweep) {
+    const recording::TemporaryFolder place;
+    const Sweep small = growing(2, 2);
+    const auto before = SweepFolder::open(place.path(), small);
+    ASSERT_TRUE(before);
+    write(before->part_of(3), "1,1,7\n" + to_text(RunEnd{Outcome::GenerationLimit, 1}));
+    for (const auto& [cells, replicates] : {std::pair{2, 3}, std::pair{3, 11}, std::pair{11, 11}}) {
+        const Sweep large = growing(cells, replicates);
+        const auto refused = SweepFolder::open(place.path(), large, SweepFolder::Extension::Refused);
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().message, HasSubstr("without --array-index"));
+        const auto after = SweepFolder::open(place.path(), large);
+        ASSERT_TRUE(after) << to_text(after.error());
+        const std::size_t run = static_cast<std::size_t>(replicates) + 1;
+        EXPECT_TRUE(after->end_of(run, SweepFolder::Wanted::Rows)) << after->name_of(run);
+        EXPECT_FALSE(after->end_of(run + 1, SweepFolder::Wanted::Rows));
+    }
+    const auto smaller = SweepFolder::open(place.path(), small);
+    ASSERT_FALSE(smaller);
+    EXPECT_THAT(smaller.error().message, HasSubstr("can get more replicates or seeds"));
+}
+
+TEST(SweepFolder, OtherSeedsOrValuesDoNotExtendASweep) {
+    const recording::TemporaryFolder place;
+    ASSERT_TRUE(SweepFolder::open(place.path(), growing(2, 2)));
+    EXPECT_FALSE(SweepFolder::open(place.path(), growing(2, 3, R"(, "seed": 5)")));
+    EXPECT_FALSE(SweepFolder::open(place.path(), growing(2, 3, R"(, "every": 2)")));
+    const auto other = parse_sweep(R"({"grid": {"food_count": [0, 1, 2]}, "replicates": 2, "generations": 1})",
+                                   [](const std::string&) { return parameters::Experiment{}; });
+    EXPECT_FALSE(SweepFolder::open(place.path(), *other));
+}
+
 TEST(SweepFolder, WithResultsOfAnUnknownSweepIsRefused) {
     const recording::TemporaryFolder folder;
     write(folder.path() + "/runs.csv", "mine");

@@ -20,8 +20,29 @@ TEST(JsonText, HasOneValue) {
 TEST(JsonText, ErrorsNameTheirLine) {
     const auto refused = parse_json("{\n\"a\": 1,\n\"b\" 2\n}").error();
     EXPECT_EQ(refused.code, base::RefusalCode::InvalidArgument);
-    EXPECT_THAT(refused.message, StartsWith("not JSON: line 3: "));
-    EXPECT_THAT(parse_json("{\"a\": 1}\n}").error().message, StartsWith("not JSON: line 2: "));
+    EXPECT_THAT(refused.message, StartsWith("not JSON: line 3, column 5: "));
+    EXPECT_THAT(parse_json("{\"a\": 1}\n}").error().message, StartsWith("not JSON: line 2, column 1: "));
+}
+
+TEST(JsonText, AByteOrderMarkIsSkipped) {
+    const auto document = parse_json("\xef\xbb\xbf{\"a\": 30.0}\r\n");
+    ASSERT_TRUE(document) << document.error().message;
+    EXPECT_EQ(document->find("a")->value.whole_number(), 30u);
+}
+
+TEST(JsonText, ErrorsStateTheLikelyCause) {
+    const auto message = [](std::string_view text) { return parse_json(text).error().message; };
+    EXPECT_THAT(message("{\"a\": 1,\n }"), testing::AllOf(StartsWith("not JSON: line 2, column 2: "),
+                                                          testing::EndsWith(" at }; remove the comma before }")));
+    EXPECT_THAT(message("[1, ]"), testing::EndsWith("remove the comma before ]"));
+    EXPECT_THAT(message("{\n// why\n\"a\": 1}"), testing::HasSubstr("JSON has no comments"));
+    EXPECT_THAT(message("{\"a\": 1 # why\n}"), testing::HasSubstr("JSON has no comments"));
+    EXPECT_THAT(message("{'a': 1}"), testing::HasSubstr("double quotes"));
+    EXPECT_THAT(message("{\"a\": 'b'}"), testing::HasSubstr("double quotes"));
+    EXPECT_THAT(message("{\"a\": 0,1}"), testing::HasSubstr("write a point in a decimal number"));
+    EXPECT_THAT(message("{\"a\": True}"), testing::HasSubstr("lower case"));
+    EXPECT_THAT(message("{\"a\": 1 \"b\": 2}"), testing::HasSubstr("a comma may be missing"));
+    EXPECT_THAT(message("{a: 1}"), testing::HasSubstr("double quotes"));
 }
 
 TEST(JsonText, MembersAndElementsHaveTheirLines) {
@@ -47,7 +68,10 @@ TEST(JsonText, NumbersKeepAllTheirBits) {
     const auto whole = [](std::string_view text) { return parse_json(text)->whole_number(); };
     EXPECT_EQ(whole("18446744073709551615"), ~std::uint64_t{0});
     EXPECT_EQ(whole("-0"), 0u);
-    for (const char* text : {"18446744073709551616", "-1", "1.0", "1e2", "\"1\"", "null"}) {
+    EXPECT_EQ(whole("30.0"), 30u);
+    EXPECT_EQ(whole("1e3"), 1000u);
+    EXPECT_EQ(whole("9007199254740991.0"), 9'007'199'254'740'991u);
+    for (const char* text : {"18446744073709551616", "-1", "1.5", "1e20", "-1e2", "\"1\"", "null"}) {
         EXPECT_EQ(whole(text), std::nullopt) << text;
     }
     EXPECT_EQ(parse_json("0.1")->real(), 0.1);

@@ -78,6 +78,13 @@ TEST(Populations, RefuseAPopulationThatDoesNotFitTheWorld) {
                               "create_world.population: got 2 islands, allowed 1 island (island_count)",
                               "create_world.population[0]: got 1 organism, allowed 2 organisms (population_size)",
                               "create_world.population[1]: got 0 organisms, allowed 2 organisms (population_size)"));
+    create.mutable_population()->RemoveLast();
+    create.set_seed(5);
+    EXPECT_THAT(fields(), testing::IsEmpty());
+    const auto filled = std::get<simulation::CreateWorld>(*to_command(request, draws)).first_population;
+    ASSERT_EQ(filled->front().cols(), 2);
+    const auto drawn = evolution::initial_population(2, parameters::Parameters{}, {5}, 0);
+    EXPECT_TRUE((filled->front().col(1) == drawn.col(1)).all());
 }
 
 } // namespace

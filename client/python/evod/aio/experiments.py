@@ -307,7 +307,8 @@ async def sweep(
                            *_option("jobs", jobs)]
                 await _output_of(Program(command, hidden=f"{path}: ", on_progress=advance))
             else:
-                text = pathlib.Path(whole).read_text(encoding="utf-8") if isinstance(whole, str) else json_text(whole)
+                text = (pathlib.Path(whole).read_text(encoding="utf-8-sig") if isinstance(whole, str)
+                        else json_text(whole))
                 runs = ExecutorSweep(executor, plan, path=path, design=design, experiment=text, results=results,
                                      program=program, on_progress=advance)  # fmt: skip
                 await _output_of(runs)

@@ -139,7 +139,8 @@ class Lab(Closing):
             The seed of the run, 0 to 2**64 - 1. By default the server draws a random seed.
         population
             The genes of the first generation: one array for each island, with shape (population_size, genes) and
-            columns in the order of `WorldInfo.gene_names`. By default the server draws the genes with the seed.
+            columns in the order of `WorldInfo.gene_names`. An array may have fewer rows: the server draws the other
+            organisms with the seed, as it draws all of them by default.
         speed
             The speed, as for `World.set_speed`. By default real time, or the speed given to `local`.
 

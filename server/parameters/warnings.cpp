@@ -1,0 +1,117 @@
+#include "server/parameters/warnings.h"
+
+#include <optional>
+#include <utility>
+
+namespace evod::parameters {
+namespace {
+
+using evolution::CrossoverMethod;
+using evolution::FitnessScaling;
+using evolution::PopulationModel;
+using evolution::SelectionMethod;
+
+std::string text_of(const Parameters& parameters, std::string_view name) {
+    return std::string{name} + " " + to_text(find_parameter(name)->get(parameters));
+}
+
+bool can_mutate(const Parameters& p) {
+    const bool has_step = p.mutation_step > 0 ||
+                          (p.controller == evolution::Controller::Network && p.brain_mutation_step > 0) ||
+                          (p.free_genes > 0 && p.free_mutation_step > 0);
+    return (p.mutation_chance > 0 && has_step) || p.reset_chance > 0 || (p.scale_chance > 0 && p.scale_range > 0) ||
+           p.bit_flip_chance > 0 || (p.rearranging != evolution::OrderMutationMethod::None && p.rearrange_chance > 0);
+}
+
+bool can_cross(const Parameters& p) {
+    return p.crossover != CrossoverMethod::None && p.crossover_chance > 0;
+}
+
+/// Returns why no organism is ever replaced by a child, or why the number of replaced organisms cannot be kept.
+std::optional<std::string> no_place_for_children(const Parameters& p) {
+    if (p.elite_count >= p.population_size) {
+        return "no child is ever bred, because " + text_of(p, "elite_count") + " is not below " +
+               text_of(p, "population_size");
+    }
+    if (p.population_model == PopulationModel::Hybrid && p.survivors >= 1) {
+        return "no child is ever bred, because all organisms survive: survivors 1";
+    }
+    if (p.population_model == PopulationModel::SteadyState && p.replaced_count > p.population_size) {
+        return text_of(p, "replaced_count") + " is above " + text_of(p, "population_size") +
+               ", so every generation replaces all organisms except the elite";
+    }
+    return std::nullopt;
+}
+
+/// Returns why fitness has no influence on who breeds.
+std::optional<std::string> no_selection(const Parameters& p) {
+    if (p.elite_count > 0 || p.population_model == PopulationModel::SteadyState) {
+        return std::nullopt; // the best survive, or the worst are replaced
+    }
+    const std::string effect = "fitness has no influence on selection: ";
+    if (p.selection == SelectionMethod::Random) {
+        return effect + "selection random";
+    }
+    if (p.selection == SelectionMethod::Tournament && p.tournament_size == p.tournament_winners) {
+        return effect + "every contestant of a tournament wins, because " + text_of(p, "tournament_size") + " equals " +
+               text_of(p, "tournament_winners");
+    }
+    if (p.selection == SelectionMethod::Truncation && p.survivors >= 1) {
+        return effect + "all organisms may breed, because survivors is 1";
+    }
+    const bool wheel = p.selection == SelectionMethod::Roulette || p.selection == SelectionMethod::StochasticUniversal;
+    if (wheel && p.fitness_scaling == FitnessScaling::LinearRanking && p.ranking_pressure <= 1) {
+        return effect + "all ranks have the same chance with ranking_pressure 1";
+    }
+    if (wheel && p.fitness_scaling == FitnessScaling::ExponentialRanking && p.ranking_decay >= 1) {
+        return effect + "all ranks have the same chance with ranking_decay 1";
+    }
+    return std::nullopt;
+}
+
+/// Adds the genes of the body that are equal in all founders although their bounds leave room.
+void add_founders_at_a_bound(const Parameters& p, std::vector<std::string>& warnings) {
+    struct Gene {
+        const char* name;
+        double min, max;
+    };
+    for (const auto& [name, min, max] :
+         {Gene{"normal_speed", p.normal_speed_min, p.normal_speed_max}, Gene{"impulse", p.impulse_min, p.impulse_max},
+          Gene{"body_size", p.body_size_min, p.body_size_max},
+          Gene{"base_health", p.base_health_min, p.base_health_max},
+          Gene{"food_radius", p.food_radius_min, p.food_radius_max},
+          Gene{"poison_radius", p.poison_radius_min, p.poison_radius_max}}) {
+        if (min >= max || p.initial_gene_min >= p.initial_gene_max) {
+            continue; // the gene is meant to be equal
+        }
+        const std::string gene{name};
+        const auto add = [&](const std::string& bound, const std::string& why) {
+            warnings.push_back("every organism of the first generation has the same " + gene + ", because " +
+                               text_of(p, bound) + why);
+        };
+        if (min >= p.initial_gene_max) {
+            add(gene + "_min", " is not below " + text_of(p, "initial_gene_max"));
+        } else if (max <= p.initial_gene_min) {
+            add(gene + "_max", " is not above " + text_of(p, "initial_gene_min"));
+        }
+    }
+}
+
+} // namespace
+
+std::vector<std::string> warnings_of(const Parameters& parameters) {
+    std::vector<std::string> warnings;
+    if (auto warning = no_place_for_children(parameters)) {
+        warnings.push_back(*std::move(warning));
+    }
+    if (!can_mutate(parameters) && !can_cross(parameters)) {
+        warnings.emplace_back("no new chromosome ever arises, because mutation and crossover are off");
+    }
+    if (auto warning = no_selection(parameters)) {
+        warnings.push_back(*std::move(warning));
+    }
+    add_founders_at_a_bound(parameters, warnings);
+    return warnings;
+}
+
+} // namespace evod::parameters
