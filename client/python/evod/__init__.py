@@ -39,8 +39,9 @@ from evod.errors import (
     Unimplemented,
     Violation,
 )
+from evod.evaluation import Evaluation
 from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, run_table, sweep
-from evod.generations import Generation, History, Life, Population
+from evod.generations import Generation, History, Life, Population, Solution
 from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Lab, Replay, World
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
@@ -87,7 +88,7 @@ __all__ = [
     "Aborted", "Actor", "AlreadyExists", "AnswerExpired", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding",
            "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
     "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference",
-           "EntityIds", "Error",
+           "EntityIds", "Error", "Evaluation",
     "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics",
            "Generation",
     "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics",
@@ -98,7 +99,8 @@ __all__ = [
            "ProgramFailed",
     "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot",
            "Snapshots",
-    "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated", "Unavailable",
+    "Solution", "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated",
+           "Unavailable",
     "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local",
            "open_run",
     "run", "run_table", "sweep",
