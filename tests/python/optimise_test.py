@@ -189,7 +189,7 @@ class Optimise(unittest.TestCase):
 
     # ---- minimize, new organisms, arrays ----------------------------------------------------------------------------
 
-    def test_minimize_shows_every_number_in_the_sign_of_the_function(self):
+    def test_minimize_keeps_the_sign_of_the_function(self):
         up, down = self.world(), self.world()
         greatest = up.evaluate(first_gene, 20)
         least = down.evaluate(lambda genes, life: -first_gene(genes, life), 20, minimize=True)

@@ -17,6 +17,7 @@ tasks of an executor.
 evod.results, evod.version, and a synchronous module for every module of evod.aio that has one, such as evod.lab, are
 generated when the package is built (setup.py).
 """
+from evod.comparisons import ComparedWorld, Comparison, Difference
 from evod.connection import LocalLab, connect, local
 from evod.errors import (
     Aborted,
@@ -40,7 +41,7 @@ from evod.errors import (
     Violation,
 )
 from evod.evaluation import Evaluation
-from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, run_table, sweep
+from evod.experiments import compare, run, run_table, sweep
 from evod.generations import Generation, History, Life, Population, Solution
 from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Lab, Replay, World
@@ -80,6 +81,7 @@ from evod.results import (
 from evod.run_file import RunFile, open_run
 from evod.snapshots import Box, Boxes, Item, Items, Organism, Organisms, Snapshot, Tile
 from evod.streams import Events, Run, Snapshots
+from evod.sweeps import Sweep
 from evod.version import __version__
 
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING

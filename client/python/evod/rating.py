@@ -16,6 +16,7 @@ from evod.errors import InvalidArgument, Violation, wrong_argument
 from evod.generations import Generation, Life, Population, Solution
 from evod.genes import Genes
 
+Array = numpy.typing.NDArray[Any]
 Fitness = Callable[[Genes, Life], numpy.typing.ArrayLike]
 
 FITNESS_MAX = 1e100  # the largest absolute value of a fitness
@@ -48,7 +49,7 @@ class Rater:
         self._before: dict[bytes, float] = {}
         self._now: tuple[int, dict[bytes, float]] = (0, {})
 
-    def rate(self, population: Population) -> numpy.typing.NDArray[Any]:
+    def rate(self, population: Population) -> Array:
         """Calls the function with the organisms of an island, and returns the fitness that evod needs.
 
         Raises InvalidArgument if the function returns a wrong shape or number, or writes into its arrays.
@@ -84,7 +85,7 @@ class Rater:
             raise wrong_argument("k", f"1 to {HALL_MAX}; world.hall_of_fame(k) returns more", k)
         return list(self._hall.values())[:k]
 
-    def _call(self, genes: Genes, life: Life, organisms: numpy.typing.NDArray[Any]) -> numpy.typing.NDArray[Any]:
+    def _call(self, genes: Genes, life: Life, organisms: Array) -> Array:
         where = f"in generation {life.generation}, island {life.island}"
         for array in (genes, *vars(life).values()):
             if isinstance(array, numpy.ndarray):
@@ -96,11 +97,11 @@ class Rater:
                 raise
             raise wrong_argument(
                 "genes", "reading; a function that repairs genes repairs a copy, genes.copy(), and rates the copy",
-                "a write", f"the fitness function has written into its arguments {where}: evod stores the genes that it "
-                "has drawn, and repaired genes cannot be handed back") from error
+                "a write", f"the fitness function has written into its arguments {where}: evod stores the genes that "
+                "it has drawn, and repaired genes cannot be handed back") from error
         return self._checked(result, organisms, where)
 
-    def _checked(self, result: Any, organisms: numpy.typing.NDArray[Any], where: str) -> numpy.typing.NDArray[Any]:
+    def _checked(self, result: Any, organisms: Array, where: str) -> Array:
         count = len(organisms)
         allowed = f"an array of {count} numbers, one for each organism"
         message = f"the fitness function has returned a value that is not allowed {where}"
@@ -117,11 +118,11 @@ class Rater:
                       for i in wrong[:5]]
             named = ", ".join(str(organisms[i]) for i in wrong[:5]) + (", …" if len(wrong) > 5 else "")
             raise InvalidArgument(
-                f"{message}: {len(wrong)} of {count} numbers, of organism {named}. For genes that cannot be rated, return "
-                f"a penalty: a number somewhat {worse} than those of all others", faults)
+                f"{message}: {len(wrong)} of {count} numbers, of organism {named}. For genes that cannot be rated, "
+                f"return a penalty: a number somewhat {worse} than those of all others", faults)
         return fitness
 
-    def _remember(self, genes: Genes, keys: Sequence[bytes], fitness: numpy.typing.NDArray[Any], life: Life) -> None:
+    def _remember(self, genes: Genes, keys: Sequence[bytes], fitness: Array, life: Life) -> None:
         cost = fitness if self.minimize else -fitness
         for place, i in enumerate(numpy.argsort(cost, kind="stable")[:HALL_MAX]):
             found = Solution(genes[i].copy(), float(fitness[i]), life.generation, life.island, int(i))
@@ -209,7 +210,8 @@ _WORDS: Mapping[str, str] = {
     **dict.fromkeys(("bounds", "gene_space", "init_range_low", "init_range_high"),
                     "the parameters free_gene_min and free_gene_max of lab.create_world"),
     **dict.fromkeys(("num_genes", "n_var", "dimensions", "dim"), "the parameter free_genes of lab.create_world"),
-    **dict.fromkeys(("pop_size", "population_size", "sol_per_pop"), "the parameter population_size of lab.create_world"),
+    **dict.fromkeys(("pop_size", "population_size", "sol_per_pop"),
+                    "the parameter population_size of lab.create_world"),
     **dict.fromkeys(("seed", "random_seed", "random_state"), "seed=N of lab.create_world"),
 }  # fmt: skip
 

@@ -30,8 +30,9 @@ def hall_of_fame(
         rows = [row for generation in ended for row in generation.islands]
         top = max(rows, key=lambda row: row.fitness_best)
         text = yield from export(world, "population", "csv", top.generation, None)
-        known = (top.island, top.best_organism)
-        genes = next(row for row in csv.DictReader(io.StringIO(text)) if (int(row["island"]), int(row["organism"])) == known)
+        name = top.island, top.best_organism
+        table = csv.DictReader(io.StringIO(text))
+        genes = next(row for row in table if (int(row["island"]), int(row["organism"])) == name)
         return [_solution({**genes, "generation": str(top.generation)}, names, top.fitness_best, minimize)]
     text = yield from export(world, "organisms", "csv", None, None)
     numbers = {generation.number for generation in ended}
