@@ -3,7 +3,6 @@ import asyncio
 import contextlib
 import io
 import os
-import subprocess
 import threading
 import unittest
 import warnings
@@ -131,8 +130,7 @@ class Optimise(unittest.TestCase):
             return first_gene(genes, life)
 
         def evoctl(world):
-            waiting.run([os.environ["EVOCTL"], "--server", self.lab.address, "--world", world.name, "pause"],
-                        stdout=subprocess.DEVNULL, check=True)
+            self.evoctl("--world", world.name, "pause", check=True)
 
         for pause in (lambda world: world.pause(), evoctl):
             world, result = self.world(), []
@@ -287,6 +285,24 @@ class Optimise(unittest.TestCase):
                 result.hall_of_fame(k)
         part = world.history(first=3, last=5)
         self.assertEqual(part.best().fitness, max(g.best for g in part))
+
+    def evoctl(self, *words, **options):
+        command = [os.environ["EVOCTL"], "--server", self.lab.address, *words]
+        return waiting.run(command, capture_output=True, text=True, **options)
+
+    def test_evoctl_shows_the_same_best(self):
+        world = self.world(island_count=2, population_size=8)
+        world.evaluate(first_gene, 12)
+        for words, history in (((), world.history()), (("--from", "3", "--to", "6"), world.history(3, 6)),
+                               (("--island", "1"), world.history(island=1))):
+            best = history.best()
+            shown = self.evoctl("--world", world.name, "best", *words, check=True).stdout
+            self.assertIn(f"fitness {best.fitness:.6g}: organism {best.organism} of island {best.island}, "
+                          f"generation {best.generation}\n", shown)
+            self.assertIn(f"{best.genes['free1']:.6g}\n", shown)
+        refused = self.evoctl("--world", self.world().name, "best")
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("no such generation has ended", refused.stderr)
 
     def test_a_world_without_generations_has_no_best(self):
         world = self.world()
