@@ -262,6 +262,13 @@ class Optimise(unittest.TestCase):
             with self.assertRaisesRegex(evod.InvalidArgument, "generation 3, island 0: .* of organism 4. .* a penalty"):
                 world.evaluate(lambda genes, life: numpy.where(numpy.arange(len(genes)) == 4, number, 0.0), 1)
 
+    def test_several_objectives_need_a_weighted_sum(self):
+        for columns in (1, 2, 3):
+            with self.assertRaisesRegex(evod.InvalidArgument, f"the shape .10, {columns}.* a weighted sum"):
+                self.world().evaluate(lambda genes, life: numpy.zeros((len(genes), columns)), 1)
+        with self.assertRaisesRegex(evod.InvalidArgument, "allowed an array of 10 numbers, one for each organism$"):
+            self.world().evaluate(lambda genes, life: numpy.zeros(9), 1)
+
     # ---- the best ---------------------------------------------------------------------------------------------------
 
     def test_the_best_organisms_are_known(self):

@@ -110,6 +110,8 @@ class Rater:
         except (TypeError, ValueError):
             raise wrong_argument("fitness", allowed, repr(result)[:200], message) from None
         if fitness.shape != (count,):
+            if fitness.ndim == 2 and len(fitness) == count:
+                allowed += "; of several objectives, return a weighted sum"
             raise wrong_argument("fitness", allowed, f"the shape {fitness.shape}", message)
         wrong = numpy.flatnonzero(~(numpy.abs(fitness) <= FITNESS_MAX))
         if len(wrong):
