@@ -1,4 +1,4 @@
-// Commands that only read: status, worlds, stats, history, organism, describe.
+// Commands that only read: status, worlds, stats, history, organism, best, describe.
 #include "client/core/change_text.h"
 #include "client/core/history_csv.h"
 #include "client/ctl/caller.h"
@@ -295,7 +295,7 @@ void history(const Common& common, const HistoryOptions& options) {
     });
 }
 
-// ---- organism, describe ----------------------------------------------------------------------------------------
+// ---- organism, best, describe ----------------------------------------------------------------------------------
 
 struct OrganismOptions {
     std::uint32_t id = 0, island = 0;
@@ -393,6 +393,36 @@ void organism(const Common& common, const OrganismOptions& options) {
     });
 }
 
+/// Shows the organism with the best fitness of all ended generations, the first one of several.
+void best(const Common& common, const HistoryOptions& options) {
+    Caller caller{common};
+    const v1::History all = history_of(caller, common, options);
+    const auto& rows = all.generations();
+    const auto top =
+        std::ranges::max_element(rows, {}, [](const v1::GenerationStatistics& row) { return row.fitness_best(); });
+    if (top == rows.end()) {
+        throw Stop{ExitCode::Refused, "no such generation has ended, or its statistics were purged"};
+    }
+    v1::Request request;
+    auto& wanted = *request.mutable_get_organism();
+    wanted.set_world(world_at(caller, common, {.generation = top->generation(), .tick = std::nullopt}));
+    wanted.set_organism(top->best_organism());
+    wanted.set_island(top->island());
+    const std::string replay = wanted.world();
+    const v1::OrganismInfo info = caller.call(std::move(request)).organism();
+    print(common, info, [&] {
+        const v1::WorldInfo world = caller.world(replay);
+        Table genes{{{"GENE"}, {"VALUE", Align::Right}}};
+        for (int i = 0; i < info.genes_size(); ++i) {
+            genes.add({i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i),
+                       text::rounded(double{info.genes(i)}, 6)});
+        }
+        return "fitness " + text::rounded(top->fitness_best(), 6) + ": organism " + std::to_string(info.id()) +
+               " of island " + std::to_string(info.island()) + ", generation " + std::to_string(info.generation()) +
+               "\n" + genes.to_text();
+    });
+}
+
 void describe(const Common& common) {
     Caller caller{common};
     v1::Request request;
@@ -462,6 +492,18 @@ void add_query_commands(command_line::Command& app, const Common& common) {
     add_options(command, wanted.moment);
     command.footer("Examples:\n  evoctl organism 12\n  evoctl organism 12 --at-generation 3 --at-tick 600");
     command.action([&] { organism(common, wanted); });
+
+    auto& best_command =
+        app.add_command("best", "Show the organism with the best fitness of all ended generations, and its genes")
+            .group(group);
+    auto& among = best_command.keep(HistoryOptions{});
+    best_command.add_option("--from", &among.from, "First generation; default: the oldest available generation")
+        .check(whole_number);
+    best_command.add_option("--to", &among.to, "Last generation; default: the last generation that has ended")
+        .check(whole_number);
+    best_command.add_option("--island", &among.island, "Only this island, numbered from 0").check(index_number);
+    best_command.footer("Examples:\n  evoctl best\n  evoctl best --from 10 --to 20 --island 1");
+    best_command.action([&] { best(common, among); });
 
     app.add_command("describe", "Show the server's version, features and limits").group(group).action([&] {
         describe(common);

@@ -19,7 +19,7 @@ sources = here.parent.parent
 
 
 # Modules of evod.aio from which synchronous modules are generated.
-SYNCHRONOUS = ("connection.py", "experiments.py", "lab.py", "streams.py", "world_queries.py")
+SYNCHRONOUS = ("connection.py", "evaluation.py", "experiments.py", "lab.py", "streams.py", "world_queries.py")
 
 
 class BuildWithGenerated(build_py):

@@ -95,7 +95,7 @@ class Results(unittest.TestCase):
         for made, kind in ((world.info(), evod.WorldInfo), (world.statistics(), evod.Statistics),
                            (world.motion(), evod.Motion),
                            (world.organism(1), evod.OrganismInfo), (world.breeding(), evod.Breeding),
-                           (self.lab.worlds()[0], evod.WorldInfo), (world.set_speed("max"), evod.WorldInfo)):
+                           (self.lab.world_infos()[0], evod.WorldInfo), (world.set_speed("max"), evod.WorldInfo)):
             self.assertIs(type(made), kind)
             self.assertIn("<table>", made._repr_html_())
             with self.assertRaises(dataclasses.FrozenInstanceError):

@@ -17,6 +17,7 @@ tasks of an executor.
 evod.results, evod.version, and a synchronous module for every module of evod.aio that has one, such as evod.lab, are
 generated when the package is built (setup.py).
 """
+from evod.comparisons import ComparedWorld, Comparison, Difference
 from evod.connection import LocalLab, connect, local
 from evod.errors import (
     Aborted,
@@ -39,8 +40,9 @@ from evod.errors import (
     Unimplemented,
     Violation,
 )
-from evod.experiments import ComparedWorld, Comparison, Difference, Sweep, compare, run, run_table, sweep
-from evod.generations import Generation, History, Life, Population
+from evod.evaluation import Evaluation
+from evod.experiments import compare, run, run_table, sweep
+from evod.generations import Generation, History, Life, Population, Solution
 from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Lab, Replay, World
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
@@ -79,6 +81,7 @@ from evod.results import (
 from evod.run_file import RunFile, open_run
 from evod.snapshots import Box, Boxes, Item, Items, Organism, Organisms, Snapshot, Tile
 from evod.streams import Events, Run, Snapshots
+from evod.sweeps import Sweep
 from evod.version import __version__
 
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
@@ -87,7 +90,7 @@ __all__ = [
     "Aborted", "Actor", "AlreadyExists", "AnswerExpired", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding",
            "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
     "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference",
-           "EntityIds", "Error",
+           "EntityIds", "Error", "Evaluation",
     "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics",
            "Generation",
     "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics",
@@ -98,7 +101,8 @@ __all__ = [
            "ProgramFailed",
     "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot",
            "Snapshots",
-    "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated", "Unavailable",
+    "Solution", "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated",
+           "Unavailable",
     "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local",
            "open_run",
     "run", "run_table", "sweep",

@@ -21,8 +21,21 @@ def with_parameters(experiment: Experiment, parameters: Mapping[str, object]) ->
     return {**values_of(experiment), **parameters}
 
 
+def world_values(experiment: Experiment) -> tuple[dict[str, object], int | None]:
+    """Returns the parameters of an experiment, and the seed in its file; None if it has none."""
+    values = values_of(experiment)
+    if experiment is None or isinstance(experiment, Mapping):
+        return values, None
+    values.pop("description", None)
+    seed: Any = values.pop("seed", None)
+    return values, seed
+
+
 def file_of(experiment: str | os.PathLike[str]) -> str:
     """Returns the path of an experiment file. Raises FileNotFound if there is none."""
+    if not isinstance(experiment, (str, os.PathLike)):
+        allowed = "the path of an experiment file, or a mapping of parameter names to values"
+        raise wrong_argument("experiment", allowed, repr(experiment))
     path = os.fspath(experiment)
     if not os.path.exists(path):
         raise FileNotFound(f"experiment: there is no file {path}")

@@ -2,24 +2,49 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, Iterable, Sequence
+import inspect
+from typing import Any, Callable, Iterable, Sequence
 
 import numpy
 import numpy.typing
 
+from evod import plotting
 from evod.conversion import result
-from evod.genes import GENE_NAMES, Genes
+from evod.errors import FailedPrecondition
+from evod.genes import ACCOUNT_PARTS, GENE_NAMES, Genes
 from evod.results import GenerationStatistics, GeneStatistics
-from evod.tables import html_table, pandas
+from evod.tables import html_table, number_text, pandas
 from evod.v1 import commands_pb2, world_pb2
-
-
-ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
 def account_part(gene: GeneStatistics, part: str) -> float:
     """Returns one of ACCOUNT_PARTS for a gene; nan if there is no selection account for this generation."""
     return numpy.nan if gene.account is None else float(getattr(gene.account, part))
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Solution:
+    """An organism and its fitness, returned by `History.best`, `History.hall_of_fame` and `World.best`."""
+
+    genes: Genes  #: shape (genes,): genes["free0"]; of a world without bodies only its free genes
+    fitness: float
+    generation: int
+    island: int
+    organism: int  #: its id in its generation and on its island
+
+    @property
+    def of(self) -> tuple[int, int, int]:
+        """Generation, island and id, as ``world.table("lineage", of=solution.of)`` accepts them: the table of its
+        ancestors."""
+        return self.generation, self.island, self.organism
+
+    def __repr__(self) -> str:
+        genes = ", ".join(f"{name} {value:.4g}" for name, value in self.genes.to_dict().items())
+        return f"<solution of generation {self.generation}: fitness {number_text(self.fitness)}, {genes}>"
+
+    def _repr_html_(self) -> str:
+        caption = f"fitness {number_text(self.fitness)}: organism {self.organism} of generation {self.generation}"
+        return html_table(("gene", "value"), self.genes.to_dict().items(), caption)
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -41,6 +66,9 @@ class Generation:
 
     number: int  #: number of the generation; the first is 1
     islands: tuple[GenerationStatistics, ...]  #: all statistics of each island, in index order
+    minimize: bool = False  #: whether less fitness is better: the numbers of a function that World.evaluate minimizes
+    evaluation_count: int | None = None  #: organisms that the call of World.evaluate has rated until now; or None
+    best_solution: Solution | None = None  #: the best organism that the call of World.evaluate has rated; or None
 
     @property
     def end_tick(self) -> int:
@@ -59,8 +87,8 @@ class Generation:
 
     @property
     def best(self) -> float:
-        """The greatest fitness of all organisms on all islands."""
-        return max(island.fitness_best for island in self.islands)
+        """The best fitness of all organisms on all islands."""
+        return (min if self.minimize else max)(island.fitness_best for island in self.islands)
 
     @property
     def mean(self) -> float:
@@ -69,8 +97,8 @@ class Generation:
 
     @property
     def worst(self) -> float:
-        """The least fitness of all organisms on all islands."""
-        return min(island.fitness_worst for island in self.islands)
+        """The worst fitness of all organisms on all islands."""
+        return (max if self.minimize else min)(island.fitness_worst for island in self.islands)
 
     @property
     def diversity(self) -> float:
@@ -133,10 +161,20 @@ class Generation:
         return f"<{self}>"
 
     def __str__(self) -> str:
-        return (
-            f"generation {self.number}: best {self.best:.1f}, mean {self.mean:.1f}, "
-            f"{self.alive_count} of {self.organism_count} alive"
-        )
+        what = f"{self.alive_count} of {self.organism_count} alive"
+        if self.evaluation_count is not None:
+            what = f"{self.evaluation_count} evaluations"
+        return f"generation {self.number}: best {number_text(self.best)}, mean {number_text(self.mean)}, {what}"
+
+    def negated(self) -> Generation:
+        """The same generation with the opposite sign of every fitness, as the function of World.evaluate returned it if
+        it is minimized."""
+        islands = tuple(dataclasses.replace(island, **{name: 0.0 - getattr(island, name) for name in _SIGNED})
+                        for island in self.islands)
+        return dataclasses.replace(self, islands=islands, minimize=not self.minimize)
+
+
+_SIGNED = ("fitness_best", "fitness_mean", "fitness_median", "fitness_worst")  # deviations have no sign
 
 
 def generations_of(rows: Iterable[world_pb2.GenerationStatistics], gene_names: Sequence[str]) -> list[Generation]:
@@ -151,7 +189,7 @@ _ISLAND_COLUMNS = tuple(field.name for field in dataclasses.fields(GenerationSta
 
 
 class History(list[Generation]):
-    """Ended generations of a world in order, returned by `World.history`: a list with a table.
+    """Ended generations of a world in order, returned by `World.history`: a list with a table and a plot.
 
     Examples
     --------
@@ -169,6 +207,53 @@ class History(list[Generation]):
     1           2         294.4           101.4
     """
 
+    #: Returns the k best organisms of these generations, best first; None: they are not known.
+    _solutions: Callable[[int], Any] | None = None
+
+    def best(self) -> Solution:
+        """Returns the best organism of all these generations, the first one of several: genes, fitness, generation,
+        island.
+
+        Raises
+        ------
+        FailedPrecondition
+            No generation has ended. Or evod.aio has returned this history: write ``await world.best()``.
+
+        Examples
+        --------
+        >>> import evod
+        >>> with evod.local(seed=42) as lab:
+        ...     world = lab.world()
+        ...     world.run(generations=2).wait()
+        ...     best = world.history().best()
+        <generation 2: best 294.4, mean 84.7, 27 of 50 alive>
+        >>> best.generation, round(best.fitness, 1), round(float(best.genes["body_size"]), 1)
+        (1, 337.6, 104.6)
+        """
+        return self.hall_of_fame(1)[0]
+
+    def hall_of_fame(self, k: int = 10) -> list[Solution]:
+        """Returns the k best organisms of all these generations, best first. Of organisms with equal genes, it contains
+        the first one; the result is shorter if there are fewer than k.
+
+        Histories of `World.evaluate` know up to 100. Others are read from the run file of the world.
+        """
+        if self._solutions is None:
+            raise FailedPrecondition("this history has no organisms: call world.best() or world.hall_of_fame()")
+        found = self._solutions(k)
+        if inspect.iscoroutine(found):
+            found.close()
+            raise FailedPrecondition("with evod.aio, write await world.best() or await world.hall_of_fame(k)")
+        solutions: list[Solution] = found
+        if not solutions:
+            raise FailedPrecondition("no generation has ended yet")
+        return solutions
+
+    def plot(self, ax: Any = None) -> Any:
+        """Plots the best and the mean fitness with matplotlib, with a band of one standard deviation; returns the
+        axes."""
+        return plotting.plot_fitness(self.columns(), ax)
+
     @property
     def gene_names(self) -> tuple[str, ...]:
         """The names of the genes."""
@@ -176,7 +261,7 @@ class History(list[Generation]):
 
     def columns(self) -> dict[str, numpy.typing.NDArray[Any]]:
         """Returns the columns of `to_pandas` as arrays, without pandas."""
-        rows = [island for g in self for island in g.islands]
+        rows = [island for g in self[:] for island in g.islands]
         columns = {name: numpy.array([getattr(row, name) for row in rows]) for name in _ISLAND_COLUMNS}
         for gene in self.gene_names:
             for what in ("mean", "deviation", "min", "max"):
@@ -184,6 +269,8 @@ class History(list[Generation]):
         for gene in self.gene_names:
             for part in ACCOUNT_PARTS:
                 columns[f"{gene}_{part}"] = numpy.array([account_part(row.genes[gene], part) for row in rows], float)
+        if self and self[0].evaluation_count is not None:
+            columns["evaluations"] = numpy.array([g.evaluation_count for g in self[:] for _ in g.islands])
         return columns
 
     def to_pandas(self) -> Any:
@@ -198,11 +285,15 @@ class History(list[Generation]):
         return f"<history of {len(self)} generations{which}>"
 
     def _repr_html_(self) -> str:
-        rows = (
-            (g.number, f"{g.best:.1f}", f"{g.mean:.1f}", f"{g.worst:.1f}", g.alive_count, g.organism_count)
-                for g in self
-        )
-        return html_table(("generation", "best", "mean", "worst", "alive", "organisms"), rows)
+        rows: list[tuple[object, ...]] = [
+            (g.number, *map(number_text, (g.best, g.mean, g.worst)), g.alive_count, g.organism_count) for g in self[:]
+        ]
+        if len(rows) > 2 * _ROWS_SHOWN:
+            rows[_ROWS_SHOWN:-_ROWS_SHOWN] = [("…",) * len(rows[0])]
+        return html_table(("generation", "best", "mean", "worst", "alive", "organisms"), rows, repr(self)[1:-1])
+
+
+_ROWS_SHOWN = 10  # at each end of a long history in a notebook
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -216,6 +307,14 @@ class Life:
     health: numpy.typing.NDArray[numpy.float32]  #: 0 for dead organisms
     food_eaten: numpy.typing.NDArray[numpy.uint32]
     poison_eaten: numpy.typing.NDArray[numpy.uint32]
+    #: Without bodies: False for organisms whose genes World.evaluate has already rated in the generation before, such
+    #: as survivors. Otherwise True.
+    is_new: numpy.typing.NDArray[numpy.bool_]
+
+    def of(self, rows: numpy.typing.NDArray[numpy.bool_]) -> Life:
+        """The life of some of the organisms. `rows` is a mask."""
+        columns = {name: value[rows] for name, value in vars(self).items() if isinstance(value, numpy.ndarray)}
+        return dataclasses.replace(self, **columns)
 
     def __repr__(self) -> str:
         return f"<life of {len(self.lived_s)} organisms in generation {self.generation}>"
@@ -292,5 +391,6 @@ def population_of(parts: Sequence[commands_pb2.Population], island: int, gene_na
             health=lived("health", "<f4"),
             food_eaten=lived("food_eaten", "<u4"),
             poison_eaten=lived("poison_eaten", "<u4"),
+            is_new=numpy.ones(len(genes), bool),
         ),
     )

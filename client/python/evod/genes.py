@@ -8,6 +8,8 @@ import numpy
 T = TypeVar("T")
 
 GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius")
+#: The parts of the change of a gene's mean, as `Generation.selection` and the columns of tables name them.
+ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
 class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
@@ -63,6 +65,12 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
 
     def __reduce__(self) -> Any:
         return (numpy.asarray(_plain(self)).__reduce__() if self.names is None else (Genes, (_plain(self), self.names)))
+
+    def copy(self, order: Any = "C") -> Genes:
+        """Returns a copy with the same names, which may be changed."""
+        made = super().copy(order)
+        made.names = self.names
+        return made
 
     def to_dict(self) -> dict[str, Any]:
         """Returns the values by name: numbers, or arrays of shape (count,)."""

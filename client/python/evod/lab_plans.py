@@ -7,10 +7,11 @@ from typing import Any, Iterable, Mapping, Sequence
 import numpy
 import numpy.typing
 
-from evod import snapshot_decoder
+from evod import snapshot_decoder, solutions
 from evod.conversion import result
 from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
 from evod.errors import Error, FailedPrecondition, NotFound, Unimplemented, Violation, copy_of, wrong_argument
+from evod.generations import Solution
 from evod.genes import Genes
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.plans import (
@@ -155,9 +156,11 @@ class LabPlans:
         ids: EntityIds = result(response.removed)
         return ids
 
-    def evaluate(self, world: str, generations: int | None) -> Plan[GenerationStream]:
-        """Runs a world whose fitness comes from clients. GenerationStream.step() then also returns the fitness it
-        awaits."""
+    def rated_genes(self, world: str) -> Plan[tuple[Sequence[str] | None, bool]]:
+        """Returns the names of the genes that a fitness function gets, None for all, and whether the world has bodies.
+
+        Raises FailedPrecondition if the world computes its fitness itself.
+        """
         parameters = yield from self.parameters(world)
         self._require("fitness", "computes fitness itself and takes none from clients")
         if parameters.fitness != "external":
@@ -166,7 +169,16 @@ class LabPlans:
                 "or create a world with fitness external",
                 [Violation("fitness", "external", str(parameters.fitness))],
             )
-        return (yield from self.run(world, generations))
+        info = yield from world_info(world)
+        names = _rated_names(info, parameters)
+        return (None if len(names) == len(info.gene_names) else names), bool(parameters.external_bodies)
+
+    def hall_of_fame(
+        self, world: str, k: int, first: int | None, last: int | None, island: int | None, minimize: bool
+    ) -> Plan[list[Solution]]:
+        """Returns the k best organisms of ended generations, best first."""
+        names = _rated_names((yield from world_info(world)), (yield from self.parameters(world)))
+        return (yield from solutions.hall_of_fame(world, names, k, first, last, island, minimize))
 
     def set_fitness(self, world: str, generation: int, island: int, fitness: numpy.typing.NDArray[Any]) -> Plan[bool]:
         """Sends the fitness of all organisms of an island; returns False if the server needs it no longer."""
@@ -308,6 +320,13 @@ class LabPlans:
             return (yield from stream.next())
         finally:
             stream.close()
+
+
+def _rated_names(info: world_pb2.WorldInfo, parameters: Parameters) -> list[str]:
+    """The genes that count for the fitness: without bodies the free genes, if there are any; otherwise all."""
+    free = [name for name, group in zip(info.gene_names, info.gene_groups) if group == world_pb2.GENE_GROUP_FREE]
+    has_bodies = parameters.fitness != "external" or parameters.external_bodies
+    return free if free and not has_bodies else list(info.gene_names)
 
 
 def _gene_names_in(population: Sequence[numpy.typing.ArrayLike] | None) -> Sequence[str]:

@@ -164,7 +164,8 @@ class Registry(Mapping[str, Description]):
         for name, value in values.items():
             description = self._descriptions.get(name)
             if description is None:
-                violations.append(Violation(name, self._allowed_instead_of(name), "an unknown name"))
+                hint = _HINTS.get(name) or self._allowed_instead_of(name)
+                violations.append(Violation(name, hint, "an unknown name"))
             elif (message := description.message(value)) is None:
                 violations.append(Violation(name, description.allowed, description.got(value)))
             else:
@@ -357,6 +358,22 @@ def _description(message: world_pb2.ParameterDescription) -> Description:
         effect=_EFFECTS.get(message.effect, ""),
         help=message.help,
     )
+
+
+_MINIMIZE = "minimize=True as an argument of world.evaluate"
+#: Names that other optimisers have, and what evod has in their place.
+_HINTS = {
+    **dict.fromkeys(("minimize", "minimise", "maximize", "maximise", "minimization"), _MINIMIZE),
+    **dict.fromkeys(("pop_size", "sol_per_pop"), "population_size"),
+    **dict.fromkeys(("generations", "num_generations", "ngen"), "generation_limit, or generations=N of world.run and "
+                    "world.evaluate"),
+    **dict.fromkeys(("num_genes", "n_var", "dimensions"), "free_genes"),
+    **dict.fromkeys(("bounds", "gene_space"), "free_gene_min and free_gene_max"),
+    "fitness_function": "fitness external, and the function as an argument of world.evaluate",
+    "mutation_rate": "mutation_chance",
+    "crossover_rate": "crossover_chance",
+    "elitism": "elite_count",
+}
 
 
 def _unknown_name(name: str, known: Mapping[str, object]) -> str:

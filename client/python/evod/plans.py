@@ -30,7 +30,7 @@ from evod.errors import (
     wrong_argument,
 )
 from evod.genes import GENE_NAMES, Genes
-from evod.generations import Generation, History, Life, Population, gene_count_of, generations_of, population_of
+from evod.generations import Generation, History, Population, gene_count_of, generations_of, population_of
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
 
@@ -67,7 +67,6 @@ TABLES = {
     "events": c.RUN_TABLE_EVENTS,
 }
 FORMATS = {"csv": c.TEXT_FORMAT_CSV, "jsonl": c.TEXT_FORMAT_JSON_LINES}
-FITNESS_MAX = 1e100  # the largest absolute value of a fitness
 DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "density": stream_pb2.DETAIL_DENSITY}
 
 
@@ -190,12 +189,19 @@ class GenerationStream:
         self._began = False
         self._over = False  # whether the run has ended; next() then returns only the generations in _ready
         self._awaited: world_pb2.AwaitedFitness | None = None  # the fitness for which the world waits, for step()
+        self.is_open = True  # whether the subscription has not ended
+        self.reason = ""  # why the run has ended: "generations", "pause", or a termination criterion of the world
 
     def begin(self, info: world_pb2.WorldInfo, first: int) -> None:
         """Call it with the server's answer to Run and the number of the first generation to return."""
         self.info, self._next = info, first
         self._goal = _goal_of(info)
         self._await_fitness(info)
+
+    @property
+    def goal(self) -> int | None:
+        """The number of the last generation of the run; None if the run has no end."""
+        return None if self._goal is None else self._goal - 1
 
     def next(self) -> Plan[Generation | None]:
         """Waits for the next generation and returns it; returns None after the last generation."""
@@ -215,6 +221,7 @@ class GenerationStream:
                 awaited, self._awaited = self._awaited, None
                 return awaited
             if self._over or self._goal is not None and self._next >= self._goal:
+                self.reason = self.reason or "generations"
                 self.close()
                 return None
             yield from self._take((yield from next_event(self._subscription)))
@@ -270,11 +277,16 @@ class GenerationStream:
         self._awaited = info.awaited_fitness if info.HasField("awaited_fitness") else None
 
     def _update_goal(self, info: world_pb2.WorldInfo) -> None:
-        goal = _goal_of(info)
-        if info.state in (world_pb2.RUN_STATE_WAITING, world_pb2.RUN_STATE_TERMINATED):
+        if info.state == world_pb2.RUN_STATE_TERMINATED:
+            self.reason = str(world_pb2.Outcome.Name(info.outcome)).removeprefix("OUTCOME_").lower()
+        # A lease pauses the world for a while only.
+        is_paused = info.state == world_pb2.RUN_STATE_PAUSED and not info.leased
+        if is_paused:
+            self.reason = "pause"
+        if is_paused or info.state in (world_pb2.RUN_STATE_WAITING, world_pb2.RUN_STATE_TERMINATED):
             self._over = True
         else:
-            self._goal = goal
+            self._goal = _goal_of(info)
 
     def _fill(self, last: int | None = None) -> Plan[None]:
         """Adds ended generations to _ready, up to `last`, but not beyond the goal."""
@@ -289,7 +301,7 @@ class GenerationStream:
 
     def close(self) -> None:
         """Ends the subscription. Afterwards next() returns None."""
-        self._over = True
+        self._over, self.is_open = True, False
         self._core.unsubscribe(self._subscription)
 
 
@@ -470,26 +482,6 @@ def view_message(
         part = build(c.Region, "region.", **dict(zip(names, region)))
     wanted = None if detail is None else _choice("detail", detail, DETAILS)
     return build(c.View, "", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
-
-
-def rate(function: Callable[[Genes, Life], numpy.typing.ArrayLike],
-         population: Population) -> numpy.typing.NDArray[Any]:
-    """Calls a fitness function and returns its numbers. Raises InvalidArgument for a wrong shape or number."""
-    result = function(population.genes, population.life)
-    allowed = f"an array of {len(population)} numbers, one for each organism"
-    message = f"the fitness function has returned a value that is not allowed in generation {population.generation}"
-    try:
-        fitness = numpy.asarray(result, float)
-    except (TypeError, ValueError):
-        raise wrong_argument("fitness", allowed, repr(result)[:200], message) from None
-    if fitness.shape != (len(population),):
-        raise wrong_argument("fitness", allowed, f"the shape {fitness.shape}", message)
-    wrong = numpy.flatnonzero(~(numpy.abs(fitness) <= FITNESS_MAX))
-    if len(wrong):
-        faults = [Violation(f"fitness[{i}]", f"{-FITNESS_MAX:g} to {FITNESS_MAX:g}", str(fitness[i]))
-                  for i in wrong[:5]]
-        raise InvalidArgument(f"{message}: {len(wrong)} of {len(fitness)} numbers", faults)
-    return fitness
 
 
 def _choice(field: str, word: str, choices: Mapping[str, Any]) -> Any:

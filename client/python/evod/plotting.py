@@ -11,7 +11,7 @@ import numpy
 import numpy.typing
 
 from evod.errors import FailedPrecondition, InvalidArgument, MissingPackage
-from evod.generations import ACCOUNT_PARTS
+from evod.genes import ACCOUNT_PARTS
 
 Array = numpy.typing.NDArray[Any]
 
@@ -177,7 +177,8 @@ def _boxes(ax: Any, color: str) -> Any:
 def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
     """Plots the best and the mean fitness over all islands. A band around the mean shows one standard deviation."""
     ax = _axes(ax)
-    generation, best = _by_generation(columns, "fitness_best", numpy.maximum)
+    is_minimized = bool(numpy.any(numpy.asarray(columns["fitness_best"]) < numpy.asarray(columns["fitness_mean"])))
+    generation, best = _by_generation(columns, "fitness_best", numpy.minimum if is_minimized else numpy.maximum)
     _, mean, deviation = _spread(columns, "fitness")
     ax.fill_between(generation, mean - deviation, mean + deviation, alpha=0.2, linewidth=0)
     ax.plot(generation, mean, label="mean")

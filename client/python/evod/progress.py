@@ -1,10 +1,14 @@
-"""Progress bars, with the package tqdm if it is installed."""
+"""Progress bars, with the package tqdm if it is installed, and lines of progress."""
 from __future__ import annotations
 
 import contextlib
+import sys
+import time
 from typing import Callable, Iterator
 
 from evod.errors import MissingPackage
+from evod.generations import Generation
+from evod.tables import number_text
 
 
 @contextlib.contextmanager
@@ -27,3 +31,29 @@ def progress_bar(what: str, total: float | None, shown: bool | None) -> Iterator
     form = None if total is None else "{desc}: {percentage:3.0f} %|{bar}| {elapsed}<{remaining}"
     with tqdm(desc=what, total=total, bar_format=form, disable=False if shown else None) as bar:
         yield None if bar.disable else lambda done: bar.update(done - bar.n) and None
+
+
+class ProgressLine:
+    """The last ended generation in one line on standard error. A terminal shows each in place of the one before."""
+
+    def __init__(self, last: int | None) -> None:
+        self._last = last  # the number of the last generation, if it is known
+        self._began = time.monotonic()
+        self._width = 0  # of the line that is shown
+
+    def show(self, generation: Generation) -> None:
+        """Shows a generation."""
+        of = "" if self._last is None else f" of {self._last}"
+        line = (f"generation {generation.number}{of}: best {number_text(generation.best)}, "
+                f"mean {number_text(generation.mean)}, {generation.evaluation_count} evaluations, "
+                f"{time.monotonic() - self._began:.1f} s")
+        is_terminal = sys.stderr.isatty()
+        sys.stderr.write(f"\r{line:<{self._width}}" if is_terminal else line + "\n")
+        sys.stderr.flush()
+        self._width = len(line) if is_terminal else 0
+
+    def end(self) -> None:
+        """Ends the line."""
+        if self._width:
+            sys.stderr.write("\n")
+            self._width = 0

@@ -20,9 +20,8 @@ import numpy.typing
 
 from evod import plotting
 from evod.errors import DamagedData, FileNotFound, NotFound
-from evod.generations import ACCOUNT_PARTS
 from evod.program import Program, find_program
-from evod.genes import GENE_NAMES, Genes
+from evod.genes import ACCOUNT_PARTS, GENE_NAMES, Genes
 from evod.tables import html_table, pandas, read_csv
 from evod.v1 import commands_pb2
 

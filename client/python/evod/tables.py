@@ -43,6 +43,17 @@ def _genes_in(text: str) -> Sequence[str]:
     return genes[: genes.index("fitness")] if "fitness" in genes else genes
 
 
+def number_text(value: float) -> str:
+    """Returns a fitness as text: one decimal, and at least four significant digits.
+
+    >>> [number_text(value) for value in (337.62, 12.0, 0.95312, -0.004, 0.0, 1.5e9)]
+    ['337.6', '12.0', '0.9531', '-0.004', '0.0', '1.5e+09']
+    """
+    value += 0.0  # no minus sign for 0
+    text = f"{value:.1f}" if value == 0 or 10 <= abs(value) < 1e7 else f"{value:.4g}"
+    return text if value == 0 or set(text) & set(".en") else text + ".0"
+
+
 def html_table(heading: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:
     """Returns a table as HTML. Without a heading, the first cell of each row is the heading of the row."""
 

@@ -67,7 +67,7 @@ async def connect(
     >>> import evod.aio
     >>> async with evod.aio.local() as server:  # in place of your own server
     ...     async with evod.aio.connect(server.address) as lab:
-    ...         lab.role, [info.name for info in await lab.worlds()]
+    ...         lab.role, [world.name for world in await lab.worlds()]
     ('admin', ['default'])
     """
     endpoint = Endpoint.parse(server)
@@ -134,8 +134,7 @@ async def local(
     try:
         lab = await connect(server.address, token="", ca="", timeout_s=timeout_s, client_name="evod.local")
         if data is not None:  # worlds that were already in the folder have their stored speed
-            for info in await lab.worlds():
-                world = await lab.world(info.name)
+            for world in await lab.worlds():
                 await world.set_speed(speed)
     except BaseException:
         server.stop()

@@ -5,23 +5,26 @@ The program evod computes tables of runs, sweeps and comparisons (`evod run`, `e
 from __future__ import annotations
 
 import concurrent.futures
-import dataclasses
-import functools
 import os
 import pathlib
 import shutil
 import tempfile
-from typing import Any, Mapping, Sequence, Union
+from typing import Any, Callable, Mapping, Sequence, Union
+
+import numpy.typing
 
 from evod.aio.connection import local
 from evod.aio.link import blocking_call
+from evod.comparisons import ComparedWorld, Comparison, Difference, comparison_of
 from evod.errors import InvalidArgument, wrong_argument
 from evod.executor_sweep import ExecutorSweep, Plan, plan_command
 from evod.experiment import Experiment, file_of, json_text, values_of, with_parameters, write_json
+from evod.function_runs import FunctionComparison, FunctionSweep, seeds_in, stand_in
 from evod.program import Program, find_program, result_in
 from evod.progress import progress_bar
 from evod.run_file import RunFile
-from evod.tables import html_table, pandas, read_csv
+from evod.sweeps import Sweep
+from evod.tables import read_csv
 
 # ---- one run
 # ----------------------------------------------------------------------------------------------------------
@@ -176,42 +179,6 @@ def _endless(generations: int | None) -> InvalidArgument:
 # ----------------------------------------------------------------------------------------------------------
 
 
-@dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class Sweep:
-    """The results of a parameter sweep, returned by `evod.sweep`."""
-
-    cell_count: int  #: number of different sets of values
-    replicates: int  #: number of runs of each cell
-    seed: int  #: the seed of the sweep
-    seeds: tuple[int, ...]  #: the seed of each replicate; it is the same in every cell
-    parameters: tuple[str, ...]  #: names of the swept parameters
-    csv: str  #: the table as text, with comments that state how to repeat the sweep
-
-    @functools.cached_property
-    def runs(self) -> Any:
-        """A DataFrame with one row per run, generation and island.
-
-        Its columns are cell, replicate, seed, the swept parameters, and those of ``world.table("generations")``.
-        """
-        return read_csv(self.csv, comment="#")
-
-    @property
-    def last(self) -> Any:
-        """The rows of `runs` for the last generation of each run."""
-        newest = self.runs.groupby(["cell", "replicate"]).generation.transform("max")
-        return self.runs[self.runs.generation == newest]
-
-    def __repr__(self) -> str:
-        swept = ", ".join(self.parameters)
-        return f"<sweep of {swept}: {self.cell_count} cells of {self.replicates} replicates, seed {self.seed}>"
-
-    def _repr_html_(self) -> str:
-        fields = (("parameters", ", ".join(self.parameters)), ("cells", self.cell_count),
-                  ("replicates", self.replicates),
-                  ("seed", self.seed))  # fmt: skip
-        return html_table((), fields, "sweep")
-
-
 async def sweep(
     experiment: Experiment = None,
     *,
@@ -223,6 +190,8 @@ async def sweep(
     generations: int | None = None,
     jobs: int | None = None,
     executor: concurrent.futures.Executor | None = None,
+    function: Callable[..., numpy.typing.ArrayLike] | None = None,
+    minimize: bool = False,
     out: str | os.PathLike[str] | None = None,
     program: str | os.PathLike[str] | None = None,
     progress: bool | None = None,
@@ -259,6 +228,13 @@ async def sweep(
         executes `evod sweep --run` with one thread. The workers need this package and the same build of evod, but no
         shared folder. The result is the same as without an executor, byte for byte. By default one process `evod sweep`
         executes all runs.
+    function
+        A fitness function, as for `World.evaluate`. The worlds have no bodies, unless ``external_bodies`` is True. Each
+        run is executed in a worker process, `jobs` at a time. Lambdas and functions of the main program are allowed,
+        and the main program is not imported again. The seeds are those of a sweep without a function. The global random
+        generators of Python and NumPy are seeded with the seed of the run, so the result does not depend on `jobs`.
+    minimize
+        Less is better for the function. The result has the sign of the function.
     out
         The folder for the results, in which the same call resumes an interrupted sweep. By default a temporary folder.
     program, progress, **parameters
@@ -293,15 +269,24 @@ async def sweep(
     if executor is not None and jobs is not None:
         raise wrong_argument("jobs", "no value if an executor is given: it determines how many runs execute at a time",
                              jobs)
+    if function is not None and (executor is not None or out is not None):
+        allowed = "no value if a function is given: worker processes of this machine execute it"
+        raise wrong_argument("out" if executor is None else "executor", allowed, out if executor is None else executor)
     given = {"grid": grid, "list": list, "latin_hypercube": latin_hypercube, "seed": seed, "generations": generations}
     whole = with_parameters(experiment, parameters)
     design: dict[str, object] = {name: value for name, value in given.items() if value is not None}
-    design |= {"experiment": os.path.abspath(whole) if isinstance(whole, str) else whole, "replicates": replicates}
+    planned = os.path.abspath(whole) if isinstance(whole, str) else whole
+    design |= {"experiment": planned if function is None else stand_in(values_of(whole)), "replicates": replicates}
     with tempfile.TemporaryDirectory(prefix="evod-sweep-") as folder:
         path = write_json(os.path.join(folder, "sweep.json"), design)
         results = pathlib.Path(folder if out is None else out)
         plan = Plan.of(result_in(await _output_of(plan_command(program, path))))
         with progress_bar("sweep", 1.0, progress) as advance:
+            if function is not None:
+                made = FunctionSweep(function, plan, values_of(whole), generations, minimize=minimize, jobs=jobs,
+                                     program=program, on_progress=advance)  # fmt: skip
+                text = await _output_of(made)
+                return Sweep(len(plan.cells), len(plan.seeds), plan.seed, plan.seeds, plan.parameters, text, minimize)
             if executor is None:
                 command = [find_program(program), "sweep", path, "--json", "--out", str(results),
                            *_option("jobs", jobs)]
@@ -320,70 +305,6 @@ async def sweep(
 # -------------------------------------------------------------------------------------------------------
 
 
-@dataclasses.dataclass(frozen=True)
-class ComparedWorld:
-    """A world of a comparison."""
-
-    name: str
-    first: float  #: mean fitness of the first generation
-    last: float  #: mean fitness of the last generation
-    rise: float  #: last - first
-    rise_low: float  #: 95 % confidence interval of the rise
-    rise_high: float
-    extinct: int  #: generations in which all organisms died
-    changes: str  #: the parameters in which it differs from the first world: "selection=random"
-
-
-@dataclasses.dataclass(frozen=True)
-class Difference:
-    """The rise of the first world minus the rise of another one, seed by seed."""
-
-    other: str
-    difference: float
-    low: float  #: 95 % confidence interval of the difference
-    high: float
-    g: float | None  #: effect size, Hedges' g; None if the differences do not vary
-    p: float  #: p-value of the sign-flip permutation test
-    adjusted: float  #: p with Holm's adjustment for the number of differences
-
-
-@dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class Comparison:
-    """The results of a comparison, returned by `evod.compare`."""
-
-    worlds: tuple[ComparedWorld, ...]  #: the first world, then its controls or the other worlds
-    differences: tuple[Difference, ...]  #: of the first world to each other world
-    verdict: str  #: the conclusions in sentences
-    report: str  #: everything that `evod compare` prints
-    csv: str  #: the fitness of every run and generation
-
-    @functools.cached_property
-    def fitness(self) -> Any:
-        """A DataFrame with the fitness of every run and generation.
-
-        Its columns are arm (name of the world), replicate, seed, generation, fitness_mean, fitness_best, organism_count
-        and alive_count.
-        """
-        return read_csv(self.csv)
-
-    def to_pandas(self) -> Any:
-        """Returns `worlds` and `differences` as one DataFrame with one row per world; the index is its name."""
-        frame = pandas().DataFrame([vars(world) for world in self.worlds]).set_index("name")
-        columns = [field.name for field in dataclasses.fields(Difference)]
-        differences = pandas().DataFrame([vars(d) for d in self.differences], columns=columns)
-        return frame.join(differences.astype({"g": float}).set_index("other"))
-
-    def __str__(self) -> str:
-        return self.report
-
-    def __repr__(self) -> str:
-        return f"<comparison of {', '.join(world.name for world in self.worlds)}: {self.verdict}>"
-
-    def _repr_html_(self) -> str:
-        heading = [field.name for field in dataclasses.fields(Difference)]
-        return html_table(heading, (vars(d).values() for d in self.differences), self.verdict)  # type: ignore[misc]
-
-
 async def compare(
     *experiments: Experiment,
     names: Sequence[str] | None = None,
@@ -392,6 +313,8 @@ async def compare(
     seed: int | None = None,
     generations: int | None = None,
     jobs: int | None = None,
+    function: Callable[..., numpy.typing.ArrayLike] | None = None,
+    minimize: bool = False,
     program: str | os.PathLike[str] | None = None,
     progress: bool | None = None,
     **parameters: object,
@@ -417,6 +340,8 @@ async def compare(
         The number of generations of each run. By default the generation_limit of the first experiment, or 60.
     jobs
         The number of simultaneous runs. By default one for each processor.
+    function, minimize
+        As for `sweep`: a function rates all worlds.
     program, progress, **parameters
         The same as for `evod.run`. The parameters replace those of all experiments.
 
@@ -440,10 +365,10 @@ async def compare(
     if names is not None and len(names) != len(given):
         raise wrong_argument("names", f"{len(given)} names, one for each experiment", names)
     with tempfile.TemporaryDirectory(prefix="evod-compare-") as folder:
-        paths = []
+        paths, arms = [], []
         for number, experiment in enumerate(given):
             if isinstance(experiment, (str, os.PathLike)):
-                if names is None and not parameters:
+                if names is None and not parameters and function is None:
                     paths.append(file_of(experiment))
                     continue
                 default = pathlib.Path(experiment).stem
@@ -456,10 +381,21 @@ async def compare(
             path = os.path.join(folder, f"{name}.json")
             if os.path.exists(path):  # two experiments may have the same name
                 path = os.path.join(tempfile.mkdtemp(dir=folder), f"{name}.json")
-            paths.append(write_json(path, values))
+            arms.append(values)
+            paths.append(write_json(path, values if function is None else stand_in(values)))
         csv = os.path.join(folder, "fitness.csv")
         command = [find_program(program), "compare", *paths, "--json", "--replicates", str(replicates), "--csv", csv]
         command += ["--controls"] if controls or controls is None and len(given) == 1 else []
+        if function is not None:
+            # The program evod checks the worlds, and returns the controls and the seeds.
+            command += [*_option("seed", seed), "--generations", "2"]
+            printed = result_in(await _output_of(Program(command, hidden=f"{folder}/")))
+            seeds = seeds_in(pathlib.Path(csv).read_text(encoding="utf-8"))
+            length = generations or int(str(arms[0].get("generation_limit") or 60))
+            with progress_bar("comparison", 1.0, progress) as advance:
+                trials = FunctionComparison(function, printed["worlds"], arms, seeds, length, minimize=minimize,
+                                            jobs=jobs, program=program, on_progress=advance)  # fmt: skip
+                return comparison_of(await _output_of(trials), printed, seeds, length)
         command += [*_option("seed", seed), *_option("generations", generations), *_option("jobs", jobs)]
         with progress_bar("comparison", 1.0, progress) as advance:
             result = result_in(await _output_of(Program(command, hidden=f"{folder}/", on_progress=advance)))
@@ -472,7 +408,7 @@ async def compare(
         )
 
 
-async def _output_of(program: Union[Program, ExecutorSweep]) -> str:
+async def _output_of(program: Union[Program, ExecutorSweep, FunctionSweep, FunctionComparison]) -> str:
     try:
         return await blocking_call(program.run)
     except BaseException:  # a cancelled task does not stop its thread

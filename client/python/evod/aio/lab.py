@@ -11,14 +11,18 @@ import numpy.typing
 from evod import page_link, plans
 from evod.aio.attributes import ParameterAttributes
 from evod.aio.awaitable import opens, opens_stream
+from evod.aio.evaluation import Evaluation
 from evod.aio.link import Link
 from evod.aio.streams import Closing, Events, Run
+from evod.aio.watched import watched
 from evod.aio.world_queries import WorldQueries
 from evod.conversion import result
+from evod.experiment import Experiment, world_values
 from evod.genes import Genes
-from evod.generations import History, Life, Population
+from evod.generations import Generation, Life, Population
 from evod.lab_plans import LabPlans
 from evod.parameters import Parameters, PlannedChange, Registry
+from evod.rating import EndRules, Rater, refuse_unknown
 from evod.results import DamagedWorld, EntityIds, WorldInfo
 from evod.tables import html_table
 from evod.v1 import commands_pb2 as c, session_pb2
@@ -97,8 +101,12 @@ class Lab(Closing):
 
     # ---- worlds ---------------------------------------------------------------------------------------------------
 
-    async def worlds(self) -> tuple[WorldInfo, ...]:
-        """Returns the state of every world, in the order in which the worlds were created."""
+    async def worlds(self) -> tuple[World, ...]:
+        """Returns every world, in the order in which the worlds were created."""
+        return tuple(World(self, info.name) for info in await self._link.perform(plans.worlds()))
+
+    async def world_infos(self) -> tuple[WorldInfo, ...]:
+        """Returns the state of every world at the same moment, with one request, in the order of `worlds`."""
         return tuple(result(info) for info in await self._link.perform(plans.worlds()))
 
     async def damaged_worlds(self) -> tuple[DamagedWorld, ...]:
@@ -119,7 +127,7 @@ class Lab(Closing):
     async def create_world(
         self,
         name: str,
-        parameters: Mapping[str, object] | None = None,
+        parameters: Experiment = None,
         *,
         seed: int | None = None,
         population: Sequence[numpy.typing.ArrayLike] | None = None,
@@ -132,11 +140,12 @@ class Lab(Closing):
         name
             The name of the new world: 1 to 64 letters, digits, "_" and "-". No other world may have this name.
         parameters
-            A mapping of parameter names to values. Parameters that are not given have their default values. A mapping
-            in place of a value is a schedule: {1: 0.2, 30: 0.05} sets each value at the first tick of its generation.
-            Before the first generation in the schedule the parameter has its default value.
+            An experiment file, or a mapping of parameter names to values. Parameters that are not given have their
+            default values. A mapping in place of a value is a schedule: {1: 0.2, 30: 0.05} sets each value at the first
+            tick of its generation. Before the first generation in the schedule the parameter has its default value.
         seed
-            The seed of the run, 0 to 2**64 - 1. By default the server draws a random seed.
+            The seed of the run, 0 to 2**64 - 1. By default the seed in the experiment file, or else the server draws a
+            random seed.
         population
             The genes of the first generation: one array for each island, with shape (population_size, genes) and
             columns in the order of `WorldInfo.gene_names`. An array may have fewer rows: the server draws the other
@@ -160,7 +169,8 @@ class Lab(Closing):
         >>> info.seed, len(population)
         (7, 10)
         """
-        plan = self._plans.create_world(name, parameters or {}, seed, population, speed)
+        values, file_seed = world_values(parameters)
+        plan = self._plans.create_world(name, values, file_seed if seed is None else seed, population, speed)
         return World(self, await self._link.perform(plan))
 
     # ---- the server -----------------------------------------------------------------------------------------------
@@ -365,7 +375,7 @@ class World(ParameterAttributes, WorldQueries):
     async def run(self, generations: int | None = None) -> Run:
         """Starts the world and returns a `Run`, which yields each generation when it ends.
 
-        The world runs even if the result is not iterated. `Run.wait` waits for the end of the run.
+        The world runs even if the result is not iterated. `Run.wait` waits for the end of the run, or for a pause.
 
         Parameters
         ----------
@@ -383,47 +393,91 @@ class World(ParameterAttributes, WorldQueries):
         """
         return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
 
+    @watched
     async def evaluate(
-        self, function: Callable[[Genes, Life], numpy.typing.ArrayLike], generations: int | None = None
-    ) -> History:
+        self,
+        function: Callable[[Genes, Life], numpy.typing.ArrayLike],
+        generations: int | None = None,
+        *,
+        minimize: bool = False,
+        only_new: bool = False,
+        target: float | None = None,
+        stagnation: int | None = None,
+        seconds: float | None = None,
+        until: Callable[[Generation], object] | None = None,
+        on_generation: Callable[[Generation], object] | None = None,
+        progress: bool = False,
+        **unknown: object,
+    ) -> Evaluation:
         """Runs the world with any fitness function, and returns the ended generations.
 
         The world must have the parameter ``fitness`` external. It then waits at the end of each generation for the
         fitness of its organisms, for each island. With ``external_bodies`` off, organisms do not live on the islands,
-        and evod is a genetic algorithm that maximises the function. The run file contains all numbers, so the run can
-        be repeated and verified without the function.
+        and evod is a genetic algorithm. The run file contains all numbers, so the run can be repeated and verified
+        without the function.
+
+        A `for` statement over the call yields each generation when it has ended. ``with world.evaluate(…) as
+        evaluation:`` and a loop over `evaluation` do the same, and the result stays at hand.
 
         Parameters
         ----------
         function
             It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and
-            returns one number for each organism: larger is better, -1e100 to 1e100.
+            returns one number for each organism, -1e100 to 1e100. Larger is better. Without bodies, the genes are the
+            free genes, if the world has any. The arrays are read-only.
         generations
-            The number of further generations, at least 1. By default until the world is paused or a termination
-            criterion ends the run.
+            The number of further generations, at least 1. By default until the world is paused, or until another
+            criterion.
+        minimize
+            Less is better. All numbers of the result and of the arguments below are in the sign of the function; the
+            server stores the negative numbers.
+        only_new
+            Call the function only with organisms whose genes it has not rated in the generation before: `Life.is_new`.
+            For functions that depend on the genes only, in worlds without bodies.
+        target
+            End with a generation whose best fitness is at least as good.
+        stagnation
+            End after this number of generations without a better best fitness.
+        seconds
+            End with the first generation that ends after this time.
+        until
+            A function of a `Generation`: end when it returns True.
+        on_generation
+            A function that is called with each `Generation` when it has ended.
+        progress
+            Show the last generation in one line on the terminal.
+
+        Returns
+        -------
+        Evaluation
+            The generations of this call, with the reason of its end. A criterion above pauses the world.
 
         Raises
         ------
         FailedPrecondition
             The world computes its fitness itself.
         InvalidArgument
-            The function has returned an array of a wrong shape, or a number that is not allowed. The world waits for
-            fitness as before. It does so too if the function raises an exception, or if this program ends: any client
-            can go on.
+            The function has returned an array of a wrong shape, or a number that is not allowed, or has written into
+            its arrays. The world waits for fitness as before. It does so too if the function raises an exception, or if
+            this program ends: any client can go on.
 
         Examples
         --------
         >>> import evod.aio
-        >>> from numpy import abs
+        >>> setting = {"fitness": "external", "external_bodies": False, "free_genes": 3}
         >>> async with evod.aio.local() as lab:
-        ...     world = await lab.create_world("peak", {"fitness": "external", "external_bodies": False}, seed=3)
-        ...     history = await world.evaluate(lambda genes, life: -abs(genes - 120).sum(axis=1), generations=30)
-        >>> bool(history[-1].best > history[0].best)
-        True
+        ...     world = await lab.create_world("peak", setting, seed=3)
+        ...     result = await world.evaluate(lambda genes, life: ((genes - 0.25) ** 2).sum(axis=1), 200,
+        ...                                   minimize=True, target=0.01)
+        >>> result.reason, result.best().fitness <= 0.01
+        ('target', True)
         """
-        run = Run(self._link, await self._link.perform(self._plans.evaluate(self.name, generations)))
-        async with run:
-            return History(await run._rate(function, self))
+        refuse_unknown(unknown)
+        rules = EndRules(target=target, stagnation=stagnation, seconds=seconds, until=until)
+        visible, has_bodies = await self._link.perform(self._plans.rated_genes(self.name))
+        rater = Rater(function, visible, has_bodies, minimize=minimize, only_new=only_new)
+        stream = await self._link.perform(self._plans.run(self.name, generations))
+        return Evaluation(self._link, stream, self, rater, rules, on_generation, progress)
 
     async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool:
         life = population.life

@@ -15,7 +15,7 @@ from typing import Callable, ParamSpec, TypeVar
 from evod import plans, transport
 from evod.core import Core
 from evod.endpoint import Endpoint
-from evod.errors import DamagedData, Error, NoConnection, Timeout, copy_of
+from evod.errors import DamagedData, Error, FailedPrecondition, NoConnection, Timeout, copy_of
 from evod.plans import Plan
 from evod.v1 import commands_pb2 as c
 
@@ -46,6 +46,7 @@ class Link:
         self._waiters: set[asyncio.Future[None]] = set()  # completed after each change of the core
         self._connection_task: asyncio.Task[None] | None = None
         self._process = os.getpid()
+        self._forgotten = ""  # a call without await, which the next call reports
 
     @property
     def is_of_this_process(self) -> bool:
@@ -66,6 +67,15 @@ class Link:
         """Whether the connection uses TLS."""
         return self._tls is not None
 
+    def forget(self, message: str) -> None:
+        """Makes the next call raise FailedPrecondition, because a call before was not awaited and so did nothing."""
+        self._forgotten = message
+
+    def _require_awaited(self) -> None:
+        message, self._forgotten = self._forgotten, ""
+        if message:
+            raise FailedPrecondition(message)
+
     # ---- plans ----------------------------------------------------------------------------------------------------
 
     async def perform(self, plan: Plan[T]) -> T:
@@ -76,6 +86,7 @@ class Link:
         """
         try:
             self.require_own_process()
+            self._require_awaited()
             step = next(plan)
             while True:
                 try:

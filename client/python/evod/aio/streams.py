@@ -5,15 +5,12 @@ Threads      call everything on the event loop on which connect() or local() ran
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Protocol, TypeVar
-
-import numpy.typing
+from typing import Any, TypeVar
 
 from evod import plans
-from evod.aio.link import Link, blocking_call
+from evod.aio.link import Link
 from evod.conversion import result
-from evod.genes import Genes
-from evod.generations import Generation, Life, Population
+from evod.generations import Generation
 from evod.results import WorldInfo
 from evod.snapshots import Snapshot
 from evod.tables import html_table
@@ -44,19 +41,11 @@ class _Stream(Closing):
         await self._link.apply(self._stream.close)
 
 
-class _Rated(Protocol):
-    """A world whose organisms a client rates."""
-
-    @property
-    def name(self) -> str: ...
-
-    async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool: ...
-
-
 class Run(_Stream):
     """The generations of a run, returned by `World.run`. Iterating it yields each generation when it ends.
 
-    Each generation is returned once, even if it ends during a reconnect. Closing a Run does not stop the world.
+    Each generation is returned once, even if it ends during a reconnect. The iteration ends if any client pauses the
+    world. Closing a Run does not stop the world.
     """
 
     _stream: plans.GenerationStream
@@ -69,6 +58,12 @@ class Run(_Stream):
     def _repr_html_(self) -> str:
         return html_table((), (("world", self.info.name), ("began", f"generation {self.info.generation}")),
                           repr(self)[1:-1])
+
+    @property
+    def reason(self) -> str:
+        """Why the run has ended: "generations", "pause", or a termination criterion of the world, such as "stagnation";
+        "" while it runs."""
+        return self._stream.reason
 
     @property
     def info(self) -> WorldInfo:
@@ -84,25 +79,6 @@ class Run(_Stream):
         if generation is None:
             raise StopAsyncIteration
         return generation
-
-    async def _rate(self, function: Callable[[Genes, Life], numpy.typing.ArrayLike], world: _Rated) -> list[Generation]:
-        """Rates the organisms with a function until the end of the run, and returns the generations."""
-        generations: list[Generation] = []
-        while True:
-            step = await self._link.perform(self._stream.step())
-            if step is None:
-                return generations
-            if isinstance(step, Generation):
-                generations.append(step)
-                continue
-            for island in step.islands:
-                names = self._stream.info.gene_names
-                population = await self._link.perform(plans.population(world.name, island, names))
-                if population.generation != step.generation:
-                    break  # another client has rated this generation
-                fitness = await blocking_call(plans.rate, function, population)
-                if not await world._set_fitness(population, fitness):
-                    break
 
     async def wait(self) -> Generation | None:
         """Waits for the end of the run and returns the last generation; None if it was already returned before."""

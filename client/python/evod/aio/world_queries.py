@@ -12,8 +12,9 @@ from evod.aio.awaitable import opens_stream
 from evod.aio.link import Link
 from evod.aio.streams import Events, Snapshots
 from evod.conversion import result
+from evod.errors import FailedPrecondition
 from evod.genes import GENE_NAMES
-from evod.generations import History, Population
+from evod.generations import History, Population, Solution
 from evod.lab_plans import LabPlans
 from evod.results import Breeding, Motion, OrganismInfo, RunState, Statistics, WorldInfo
 from evod.snapshots import Snapshot
@@ -114,7 +115,7 @@ class WorldQueries:
         return statistics
 
     async def history(
-        self, first: int | None = None, last: int | None = None, *, island: int | None = None
+        self, first: int | None = None, last: int | None = None, *, island: int | None = None, minimize: bool = False
     ) -> History:
         """Returns the ended generations whose statistics the server still stores.
 
@@ -124,8 +125,63 @@ class WorldQueries:
             The first and the last generation to return; the first generation of a run is 1. By default all generations.
         island
             The index of an island. If it is given, the result contains only the statistics of this island.
+        minimize
+            Show the numbers in the sign of a function that `World.evaluate` minimizes.
         """
-        return await self._link.perform(plans.history(self.name, first, last, island))
+        ended = await self._link.perform(plans.history(self.name, first, last, island))
+        history = History(g.negated() for g in ended) if minimize else ended
+        if history:
+            began, end = history[0].number, history[-1].number
+            history._solutions = lambda k: self.hall_of_fame(k, began, end, island=island, minimize=minimize)
+        return history
+
+    async def best(self, *, minimize: bool = False) -> Solution:
+        """Returns the best organism of all ended generations: its genes, fitness, generation and island.
+
+        Its ancestors are in ``world.table("lineage", of=best.of)``. The arguments are as for `hall_of_fame`.
+
+        Raises
+        ------
+        FailedPrecondition
+            No generation has ended.
+
+        Examples
+        --------
+        >>> import evod.aio
+        >>> async with evod.aio.local(seed=42) as lab:
+        ...     world = await lab.world()
+        ...     last = await (await world.run(generations=2)).wait()
+        ...     best = await world.best()
+        ...     ancestors = await world.table("lineage", of=best.of)
+        >>> best.of, len(ancestors)
+        ((1, 0, 1), 1)
+        """
+        found = await self.hall_of_fame(1, minimize=minimize)
+        if not found:
+            raise FailedPrecondition("no generation has ended yet")
+        return found[0]
+
+    async def hall_of_fame(
+        self,
+        k: int = 10,
+        first: int | None = None,
+        last: int | None = None,
+        *,
+        island: int | None = None,
+        minimize: bool = False,
+    ) -> list[Solution]:
+        """Returns the k best organisms of the ended generations, best first; of organisms with equal genes the first.
+
+        They are read from the run file, for more than one organism from its whole table of organisms.
+
+        Parameters
+        ----------
+        k
+            The number of organisms.
+        first, last, island, minimize
+            As for `history`.
+        """
+        return await self._link.perform(self._plans.hall_of_fame(self.name, k, first, last, island, minimize))
 
     async def organism(self, organism: int, island: int = 0) -> OrganismInfo:
         """Returns the genes, position, health, parents, next choice and neural network of the organism with this id.

@@ -1,0 +1,122 @@
+"""The run of a world that a function rates. evod.evaluation is generated from this file.
+
+Threads      call everything on the event loop on which connect() or local() ran. The fitness function runs on another
+             thread.
+"""
+from __future__ import annotations
+
+from typing import Any, AsyncIterator, Callable, Protocol, TypeVar
+
+import numpy.typing
+
+from evod import plans
+from evod.aio.link import Link, blocking_call
+from evod.aio.watched import call_back
+from evod.generations import Generation, History, Population
+from evod.plans import GenerationStream
+from evod.progress import ProgressLine
+from evod.rating import EndRules, Rater
+from evod.results import WorldInfo
+from evod.v1 import world_pb2
+
+T = TypeVar("T")
+
+
+class _Rated(Protocol):
+    """A world whose organisms a client rates."""
+
+    @property
+    def name(self) -> str: ...
+
+    async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool: ...
+
+    async def pause(self) -> WorldInfo: ...
+
+
+class Evaluation(History):
+    """The generations of `World.evaluate`: a `History` with the reason of its end.
+
+    While it runs, iterating it rates organisms until the next generation has ended, and yields this generation.
+    """
+
+    #: Why it has ended. "generations": all have been rated. "target", "stagnation", "seconds", "until": that argument.
+    #: "pause": the world was paused. "generation_limit", "target_fitness", … : a termination criterion of the world.
+    #: "break": a loop over it was left. "": it runs.
+    reason: str = ""
+
+    def __init__(self, link: Link, stream: GenerationStream, world: _Rated, rater: Rater, rules: EndRules,
+                 on_generation: Callable[[Generation], object] | None, progress: bool) -> None:
+        super().__init__()
+        self._link, self._stream, self._world, self._rater, self._rules = link, stream, world, rater, rules
+        self._on_generation = on_generation
+        self._line = ProgressLine(stream.goal) if progress else None
+        self._solutions = rater.hall_of_fame
+
+    @property
+    def evaluation_count(self) -> int:
+        """The number of organisms that this call has rated."""
+        return self._rater.evaluation_count
+
+    def __repr__(self) -> str:
+        return f"{super().__repr__()[:-1]}: {self.evaluation_count} evaluations, {self.reason or 'running'}>"
+
+    async def __aiter__(self) -> AsyncIterator[Generation]:
+        index = 0
+        try:
+            while index < len(self) or await self._advance():
+                yield self[index]
+                index += 1
+        finally:
+            await self.close()
+
+    async def wait(self: T) -> T:
+        """Rates organisms until the end, and returns this object."""
+        async for _ in self:  # type: ignore[attr-defined]
+            pass
+        return self
+
+    async def close(self) -> None:
+        """Rates nothing more. The world waits for the fitness of its generation, if it has not been paused."""
+        if self._line is not None:
+            self._line.end()
+        if self._stream.is_open:
+            self.reason = self.reason or "break"
+            await self._link.apply(self._stream.close)
+
+    async def __aenter__(self: T) -> T:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+    async def _advance(self) -> bool:
+        """Rates organisms until another generation has ended, and adds it. Returns False at the end."""
+        if self.reason:
+            return False
+        step = await self._link.perform(self._stream.step())
+        while isinstance(step, world_pb2.AwaitedFitness):
+            await self._rate(step)
+            step = await self._link.perform(self._stream.step())
+        if step is None:
+            self.reason = self._stream.reason
+            return False
+        generation = self._rater.completed(step)
+        self.append(generation)
+        if self._line is not None:
+            self._line.show(generation)
+        if self._on_generation is not None:
+            await call_back(self._on_generation, generation)
+        self.reason = self._rules.reason(generation)
+        if self.reason:
+            await self._world.pause()
+        return True
+
+    async def _rate(self, awaited: world_pb2.AwaitedFitness) -> None:
+        for island in awaited.islands:
+            names = self._stream.info.gene_names
+            population = await self._link.perform(plans.population(self._world.name, island, names))
+            if population.generation != awaited.generation:
+                return  # another client has rated this generation
+            fitness = await blocking_call(self._rater.rate, population)
+            if not await self._world._set_fitness(population, fitness):
+                return
