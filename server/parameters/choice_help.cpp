@@ -55,6 +55,8 @@ constexpr Sentence sentences[] = {
     {"out_of_bounds", "clamp", "The gene gets the value of the nearer bound, so values gather at the bounds."},
     {"out_of_bounds", "reflect", "The gene goes back from the bound as far as it would have gone beyond."},
     {"out_of_bounds", "redraw", "The gene gets a uniform random value within its bounds."},
+    {"free_gene_start", "uniform", "Every value of a gene is equally likely."},
+    {"free_gene_start", "latin_hypercube", "Each equal part of a gene's range has one organism."},
     {"migration", "none", "The islands are independent."},
     {"migration", "ring", "Each island sends to the next one, the last to the first."},
     {"migration", "fully_connected", "Each island sends to every other island."},

@@ -26,13 +26,15 @@ v1::ParameterEffect to_proto(base::Effect effect) {
     return v1::PARAMETER_EFFECT_UNSPECIFIED;
 }
 
-/// A client may send a whole number as a real one, as NumPy and JavaScript have it. The registry decides which kind the
-/// parameter has, and accepts a count for both.
-parameters::ParameterValue to_value(const v1::ParameterValue& value) {
+/// A client may send the value of a count as a real number, as NumPy and JavaScript have it.
+parameters::ParameterValue to_value(const std::string& name, const v1::ParameterValue& value) {
     switch (value.kind_case()) {
     case v1::ParameterValue::kReal:
-        if (const auto count = base::whole_number_of(value.real())) {
-            return *count;
+        if (const auto* description = parameters::find_parameter(name);
+            description != nullptr && std::holds_alternative<parameters::CountParameter>(description->kind)) {
+            if (const auto count = base::whole_number_of(value.real())) {
+                return *count;
+            }
         }
         return value.real();
     case v1::ParameterValue::kCount:
@@ -171,7 +173,7 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
                                   "no value"});
             complete = false;
         } else {
-            converted.push_back({assignment.name(), to_value(assignment.value())});
+            converted.push_back({assignment.name(), to_value(assignment.name(), assignment.value())});
         }
     }
     if (!complete) {
@@ -214,7 +216,7 @@ parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
         if (value.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
             return base::Violation{{}, description->allowed(), "no value"};
         }
-        return parameters::fault_of({value.name(), to_value(value.value())});
+        return parameters::fault_of({value.name(), to_value(value.name(), value.value())});
     };
     std::set<std::pair<std::uint64_t, std::string_view>> seen;
     const std::size_t before = violations.size();
@@ -227,7 +229,7 @@ parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
             fault->field = field(value.name(), value.generation());
             violations.push_back(*std::move(fault));
         } else {
-            schedule.add(value.generation(), {value.name(), to_value(value.value())});
+            schedule.add(value.generation(), {value.name(), to_value(value.name(), value.value())});
         }
     }
     if (violations.size() > before) {

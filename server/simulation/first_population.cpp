@@ -16,7 +16,7 @@ std::string bound_parameters(const evolution::GeneLayout& layout, unsigned gene)
     case evolution::GeneGroup::Brain:
         return "brain_weight_limit";
     case evolution::GeneGroup::Free:
-        return "free_gene_min, free_gene_max, or its entry in the list";
+        return "free_gene_min, free_gene_max";
     default:
         return layout.names[gene] + "_min, " + layout.names[gene] + "_max";
     }
@@ -91,7 +91,10 @@ void add_gene_faults(evolution::ConstGenes genes, const evolution::GeneLayout& l
         faults.push_back({organism + "." + layout.names[gene],
                           parameters::to_text(parameters::ParameterValue{double{min}}) + " to " +
                               parameters::to_text(parameters::ParameterValue{double{max}}) + " (" +
-                              bound_parameters(layout, gene) + ")",
+                              (layout.groups[gene] == evolution::GeneGroup::Free && !listed.empty()
+                                   ? "its entry in the list"
+                                   : bound_parameters(layout, gene)) +
+                              ")",
                           parameters::to_text(parameters::ParameterValue{double{value}})});
     }
     if (const auto gene = faults.size() == before ? listed.first_fault(genes) : std::nullopt) {

@@ -154,6 +154,38 @@ class Evaluate(unittest.TestCase):
             with self.assertRaises(evod.InvalidArgument):
                 self.lab.create_world("six", {"population_size": 12}, population=run.genes(3))
 
+    def test_genes_of_a_list_keep_to_their_values(self):
+        genes = [evod.genes.Real("rate", 0.001, 1, scale="logarithmic"), evod.genes.Integer("layers", 1, 8),
+                 evod.genes.Choice("material", ["steel", "wood", "clay"]), evod.genes.Permutation("tour", 5),
+                 evod.genes.Real("angle", -90, 90, step=15)]
+        world = self.lab.create_world("mixed", {
+            "fitness": "external", "external_bodies": False, "free_genes": genes, "population_size": 40,
+            "mutate_group": "free", "rearranging": "inversion", "rearrange_chance": 0.5, "reset_chance": 0.1}, seed=3)
+        cost = numpy.abs(numpy.arange(5) - 2)
+
+        def fitness(genes, life):
+            tour = numpy.stack([genes[f"tour{i}"] for i in range(5)], axis=1)
+            self.assertTrue((numpy.sort(tour, axis=1) == numpy.arange(5)).all())
+            self.assertTrue(numpy.isin(genes["layers"], range(1, 9)).all())
+            self.assertTrue(numpy.isin(genes["material"], range(3)).all())
+            self.assertTrue(numpy.isin(genes["angle"], range(-90, 91, 15)).all())
+            return -abs(numpy.log10(genes["rate"]) + 2) - abs(genes["layers"] - 5) - (genes["material"] != 1) \
+                - tour @ cost / 10 - abs(genes["angle"] - 30) / 90
+
+        world.evaluate(fitness, generations=60)
+        best = world.history()[-1]
+        self.assertGreater(best.best, -2.5)
+        self.assertEqual(list(world.info().gene_names[6:]),
+                         ["rate", "layers", "material", "tour0", "tour1", "tour2", "tour3", "tour4", "angle"])
+        world.reset(free_genes=[evod.genes.Integer("bits", 0, 1)])
+        self.assertEqual(list(world.info().gene_names[6:]), ["bits"])
+        with self.assertRaisesRegex(evod.InvalidArgument, r"free_genes\[0\].max.*16777216"):
+            self.lab.create_world("wrong", {"fitness": "external",
+                                            "free_genes": [evod.genes.Integer("n", 0, 20_000_000)]})
+        with self.assertRaisesRegex(evod.InvalidArgument, r"free_genes\[0\]"):
+            self.lab.create_world("wrong", {"fitness": "external", "free_genes": [{"minimum": 3}]})
+        world.delete()
+
     def test_a_wrong_result_names_it_and_the_world_waits(self):
         world = self.lab.create_world("wrong", OPTIMISER, seed=2)
         for result, field, got in (

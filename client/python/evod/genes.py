@@ -12,6 +12,53 @@ GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radiu
 ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
+class Real(dict[str, Any]):
+    """A real number in the list of the free genes: `free_genes=[evod.genes.Real("rate", 0.001, 1, scale="logarithmic")]`.
+
+    Parameters
+    ----------
+    name
+        The name of the gene: letters, digits and _.
+    min, max
+        Its bounds, both included.
+    step
+        The values are `min`, `min + step`, and so on. By default all values between the bounds.
+    scale
+        "linear", or "logarithmic" for a gene whose factors matter; its bounds must be above 0.
+    mutation_step
+        The size of a creep mutation. By default the parameter free_mutation_step, as a share of the range.
+    """
+
+    def __init__(self, name: str, min: float = 0, max: float = 1, *, step: float = 0, scale: str = "linear",
+                 mutation_step: float = 0) -> None:
+        super().__init__(name=name, min=float(min), max=float(max))
+        self.update({key: value for key, value, default in (("step", step, 0), ("scale", scale, "linear"),
+                                                            ("mutation_step", mutation_step, 0)) if value != default})
+
+
+class Integer(Real):
+    """A whole number in the list of the free genes, within ±2**24: `evod.genes.Integer("layers", 1, 8)`."""
+
+    def __init__(self, name: str, min: int, max: int, *, step: int = 1, mutation_step: float = 0) -> None:
+        super().__init__(name, min, max, step=step, mutation_step=mutation_step)
+
+
+class Choice(dict[str, Any]):
+    """One of several values in the list of the free genes: `evod.genes.Choice("material", ["steel", "wood"])`. The gene is
+    the index of the choice, from 0."""
+
+    def __init__(self, name: str, choices: Iterable[object]) -> None:
+        super().__init__(name=name, choices=[str(choice) for choice in choices])
+
+
+class Permutation(dict[str, Any]):
+    """`count` genes in the list of the free genes that contain 0, 1, … count − 1 in any order, with the names NAME0,
+    NAME1, and so on: `evod.genes.Permutation("tour", 32)`. The parameter rearranging mutates them."""
+
+    def __init__(self, name: str, count: int) -> None:
+        super().__init__(name=name, permutation=count)
+
+
 class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
     """An array of genes, shape (genes,) or (count, genes), that can also be indexed with the name of a gene.
 

@@ -16,6 +16,7 @@ from evod.genes import Genes
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.plans import (
     build,
+    gene_list,
     gene_names,
     GenerationStream,
     next_event,
@@ -218,6 +219,10 @@ class LabPlans:
         speed = self.speed_of_new_worlds if speed is None else speed
         requested = None if speed is None else speed_message(speed)  # raises before the world is created
         registry = yield from self.registry()
+        parameters = dict(parameters)
+        listed = parameters.pop("free_genes", None)
+        if not isinstance(listed, (list, tuple)) and listed is not None:
+            parameters["free_genes"] = listed
         first, later = registry.planned(parameters)
         if later:
             self._require("planned_changes", "does not support planned changes")
@@ -229,6 +234,7 @@ class LabPlans:
             seed=seed,
             population=[c.IslandPopulation(genes=numpy.asarray(genes, "<f4").ravel()) for genes in population or ()],
             population_gene_names=_gene_names_in(population),
+            free_genes=gene_list(listed) if isinstance(listed, (list, tuple)) else None,
         )
         world = info.name
         if requested is not None:

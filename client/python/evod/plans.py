@@ -362,6 +362,24 @@ def history(world: str, first: int | None, last: int | None, island: int | None)
         first = answer.next_generation
 
 
+def gene_list(genes: Sequence[Mapping[str, object]]) -> world_pb2.FreeGeneList:
+    """Converts a list of free genes, as experiment files contain it, to a message.
+
+    Raises InvalidArgument if an entry has an unknown field or a value of another type. The server checks the rest.
+    """
+    message = world_pb2.FreeGeneList()
+    for index, gene in enumerate(genes):
+        fields = {**gene, "logarithmic": gene.get("scale", "linear") == "logarithmic"}
+        if fields.pop("scale", "linear") not in ("linear", "logarithmic"):
+            raise wrong_argument(f"free_genes[{index}].scale", '"linear" or "logarithmic"', repr(gene["scale"]))
+        try:
+            message.genes.add(**{"name": f"free{index}", **fields})
+        except (TypeError, ValueError) as error:
+            raise wrong_argument(f"free_genes[{index}]", "a gene such as evod.genes.Real(\"rate\", 0, 1)",
+                                 repr(gene)) from error
+    return message
+
+
 def gene_names(world: str, count: int) -> Plan[Sequence[str]]:
     """Returns the names of the genes of a world in which organisms had `count` genes."""
     if count == len(GENE_NAMES):

@@ -33,7 +33,7 @@ TEST(Interview, RepeatsAQuestionAfterAnInvalidAnswer) {
     ASSERT_TRUE(answers);
     EXPECT_EQ(answers->population_size, 9u);
     EXPECT_EQ(answers->food_count, 11u);
-    EXPECT_THAT(out.str(), HasSubstr("got many"));
+    EXPECT_THAT(out.str(), HasSubstr("got \"many\""));
 }
 
 TEST(Interview, AsksOnlyWhatTheAnswersMakeRelevant) {

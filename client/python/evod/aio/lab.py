@@ -521,10 +521,16 @@ class World(ParameterAttributes, WorldQueries):
         """Sets the speed: simulated seconds per second, 0.001 to 10,000, or "max" for as fast as the machine allows."""
         return await self._command("set_speed", speed=plans.speed_message(speed))
 
-    async def reset(self, seed: int | None = None) -> WorldInfo:
+    async def reset(
+        self, seed: int | None = None, *, free_genes: Sequence[Mapping[str, object]] | None = None
+    ) -> WorldInfo:
         """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for
-        `run`."""
-        return await self._command("reset_world", seed=seed)
+        `run`.
+
+        free_genes is the list of the free genes from now on (`evod.genes.Real` and its neighbours); [] removes the list.
+        By default the list stays."""
+        listed = None if free_genes is None else plans.gene_list(free_genes)
+        return await self._command("reset_world", seed=seed, free_genes=listed)
 
     async def release_lease(self) -> WorldInfo:
         """Ends the lease of the last `run_until_tick` or `step`, so that the world resumes if it was running before."""
