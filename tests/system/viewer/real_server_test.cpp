@@ -22,13 +22,14 @@ TEST(RealServer, ScreenshotsMatchTheServersSnapshots) {
         const TemporaryFolder folder;
         const std::string path = folder.file("frame.png");
         std::string arguments = "--server " + server.address();
-        arguments.append(" --skin classic --world ").append(world).append(" --screenshot ").append(path);
+        arguments.append(" --size 1680x720 --skin classic --world ").append(world);
+        arguments.append(" --screenshot ").append(path);
         arguments.append(" --at-tick ").append(std::to_string(tick));
         const Ran ran = run_evoview(arguments);
         ASSERT_EQ(ran.status, 0) << ran.output;
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
-        const ExpectedFrame expected{*snapshot, camera_of(snapshot->about, 1280, 720)};
+        const ExpectedFrame expected{*snapshot, camera_of_screenshot(snapshot->about, 1680, 720)};
         EXPECT_GT(expected.count(palette::background), 500'000u);
         // A ring of radius 4 px has dozens of fully covered pixels, a disc more.
         EXPECT_GT(expected.count(palette::organism), 10 * snapshot->entities->organisms.id.size());
