@@ -14,6 +14,7 @@ namespace evod::viewer {
 
 namespace {
 
+constexpr double label_padding = 2;          // pixels at the left and the right of the text of a label
 constexpr std::size_t with_names_max = 2000; // the healthiest organisms of larger populations are not named
 constexpr float label_pixels = 14;           // height of the health numbers, at scale 1
 constexpr double density_cell_pixels = 5;
@@ -422,15 +423,24 @@ void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double 
             }
         }
     }
+    // Where labels compete for a place, the first one gets it.
     reused_.named.clear();
-    if (organisms.size() <= with_names_max) {
-        reused_.named.assign(healthiest.begin(), healthiest.end());
-    }
+    const auto add_name = [&](std::size_t index) {
+        if (index < organisms.size() && std::ranges::find(reused_.named, index) == reused_.named.end()) {
+            reused_.named.push_back(index);
+        }
+    };
     for (const auto& index : {highlighted.selected, highlighted.pointed_at}) {
-        if (index && *index < organisms.size() && std::ranges::find(reused_.named, *index) == reused_.named.end()) {
-            reused_.named.push_back(*index);
+        if (index) {
+            add_name(*index);
         }
     }
+    if (organisms.size() <= with_names_max) {
+        std::ranges::for_each(healthiest, add_name);
+    }
+    std::ranges::stable_partition(reused_.labelled, [&](std::size_t index) {
+        return std::ranges::find(reused_.named, index) != reused_.named.end();
+    });
     if (reused_.labelled.empty() || !labels_are_readable(camera, reused_.labelled.size(), zoom_min)) {
         reused_.labelled = reused_.named;
     }
@@ -440,17 +450,33 @@ void IslandRenderer::draw_labels(const core::SnapshotInterpolator& view, double 
                    ? health
                    : "#" + std::to_string(organisms.entities->id[i]) + " " + health;
     };
+    const ShapeStyle& style = styles_of(look).organism;
+    const double arc = style.form == Form::Body ? 1.6 * camera.scale() * double{style.edge_pixels} : 0; // around a body
+    const auto label_of = [&](std::size_t i, double width) {
+        const auto [x, y] = organisms[i];
+        return HealthLabel{camera.to_screen({x, y}), organisms.entities->radius_px(i) * camera.zoom() + arc, width};
+    };
     reused_.labels.clear();
     for (const std::size_t i : reused_.labelled) {
-        const auto [x, y] = organisms[i];
-        reused_.labels.push_back({camera.to_screen({x, y}), organisms.entities->radius_px(i) * camera.zoom(),
-                                  static_cast<double>(size_of(text_of(i), font).x)});
+        reused_.labels.push_back(label_of(i, double{size_of(text_of(i), font).x} + 2 * label_padding));
     }
-    const auto corners =
-        place_labels(reused_.labels, static_cast<double>(font.FontSize), on_screen(camera, snapshot->about));
+    reused_.obstacles.clear();
+    if (organisms.size() <= with_names_max) {
+        for (std::size_t i = 0, size = organisms.size(); i < size; ++i) {
+            reused_.obstacles.push_back(label_of(i, 0));
+        }
+    }
+    const double height = double{font.FontSize};
+    const auto corners = place_labels(reused_.labels, reused_.obstacles, height, on_screen(camera, snapshot->about));
+    const palette::IslandColours& colours = palette::of(look);
     for (std::size_t i = 0; i < reused_.labelled.size(); ++i) {
-        write(list, font, {static_cast<float>(corners[i].x), static_cast<float>(corners[i].y)}, palette::of(look).label,
-              text_of(reused_.labelled[i]));
+        if (!corners[i]) {
+            continue;
+        }
+        const auto left = static_cast<float>(corners[i]->x), top = static_cast<float>(corners[i]->y);
+        const auto right = static_cast<float>(corners[i]->x + reused_.labels[i].width);
+        list.AddRectFilled({left, top}, {right, top + font.FontSize}, ink(faint(colours.ground, 200)), 2);
+        write(list, font, {left + static_cast<float>(label_padding), top}, colours.label, text_of(reused_.labelled[i]));
     }
 }
 

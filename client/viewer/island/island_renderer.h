@@ -105,6 +105,7 @@ class IslandRenderer {
         std::vector<std::size_t> labelled; // indices of the organisms with a number
         std::vector<std::size_t> named;    // indices of those whose label contains the id, too
         std::vector<HealthLabel> labels;
+        std::vector<HealthLabel> obstacles; // organisms that labels should not cover
     };
 
     ShapePainter painter_;

@@ -41,26 +41,45 @@ class Placed {
     std::unordered_map<std::int64_t, std::vector<Rectangle>> cells_;
 };
 
+/// Whether a label would cover a part of an organism.
+bool covers(const Rectangle& label, const HealthLabel& organism) {
+    const double x = std::clamp(organism.centre.x, label.left, label.left + label.width);
+    const double y = std::clamp(organism.centre.y, label.top, label.top + label.height);
+    return std::hypot(x - organism.centre.x, y - organism.centre.y) < organism.radius;
+}
+
 } // namespace
 
-std::vector<Point> place_labels(std::span<const HealthLabel> labels, double height, const Rectangle& walls) {
+std::vector<std::optional<Point>> place_labels(std::span<const HealthLabel> labels,
+                                               std::span<const HealthLabel> organisms, double height,
+                                               const Rectangle& walls) {
     double cell = height;
     for (const HealthLabel& label : labels) {
         cell = std::max(cell, label.width);
     }
     Placed placed{cell};
-    std::vector<Point> corners;
+    std::vector<std::optional<Point>> corners;
     corners.reserve(labels.size());
     for (const HealthLabel& label : labels) {
         const double right = walls.left + walls.width - label.width - 1;
         const double left = std::max(std::min(label.centre.x - label.width / 2, right), walls.left + 1);
         const Rectangle above{left, label.centre.y - label.radius - height - 1, label.width, height};
         const Rectangle below{left, label.centre.y + label.radius + 1, label.width, height};
-        const bool above_is_free = above.top >= walls.top && !placed.collides(above);
-        const bool below_is_free = below.top + height <= walls.top + walls.height && !placed.collides(below);
-        const Rectangle& chosen = !above_is_free && (below_is_free || above.top < walls.top) ? below : above;
+        const auto is_free = [&](const Rectangle& place) {
+            return place.top >= walls.top && place.top + height <= walls.top + walls.height && !placed.collides(place);
+        };
+        const auto covers_none = [&](const Rectangle& place) {
+            return std::ranges::none_of(organisms, [&](const HealthLabel& other) { return covers(place, other); });
+        };
+        const bool above_is_free = is_free(above), below_is_free = is_free(below);
+        if (!above_is_free && !below_is_free) {
+            corners.emplace_back();
+            continue;
+        }
+        const bool is_above = above_is_free && (!below_is_free || covers_none(above) || !covers_none(below));
+        const Rectangle& chosen = is_above ? above : below;
         placed.add(chosen);
-        corners.push_back({chosen.left, chosen.top});
+        corners.emplace_back(Point{chosen.left, chosen.top});
     }
     return corners;
 }

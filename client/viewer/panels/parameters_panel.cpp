@@ -146,7 +146,7 @@ void ParametersPanel::follow(const Context& context) {
         } else if (event.kind_case() == Kind::kParametersChanged && edits_.known()) {
             stale_ = !edits_.update(event.parameters_changed()) || stale_;
         } else if (event.kind_case() == Kind::kGenerationFinished) {
-            stale_ = stale_ || edits_.has_pending(); // pending values have taken effect
+            stale_ = stale_ || has_pending(edits_); // pending values have taken effect
         }
     }
     if (edits_.busy() && context.now - sent_ > Poll::answer_timeout) { // the answer is overdue

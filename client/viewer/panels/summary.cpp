@@ -7,6 +7,8 @@
 #include "client/viewer/panels/fitness_curve.h"
 #include "client/viewer/world/status_text.h"
 
+#include "text/shared_texts.h"
+
 #include <imgui.h>
 
 #include <algorithm>
@@ -15,7 +17,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float text_lines = 5; // room for the sentences, so that the widgets below them stay in place
+constexpr float text_lines = 6; // room for the sentences, so that the widgets below them stay in place
 
 } // namespace
 
@@ -52,7 +54,7 @@ void Summary::build_experiment(Panel::Context& context) {
     if (experiment_.text().empty()) {
         widgets::small_text(world.feed.control().known() ? "Loading the experiment …" : "No world is open yet.");
     } else {
-        widgets::small_text(experiment_.text(), palette::text);
+        widgets::small_text(texts::what_it_is + (" " + experiment_.text()), palette::text);
     }
     ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), end));
     build_marks(context);

@@ -197,7 +197,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         app.add_option("--screenshot", &screenshot.path, "Save one frame as this PNG file, without a window")
             .excludes(script);
     app.add_option("--at-tick", &screenshot.tick,
-                   "Tick of the screenshot; the first snapshot of this tick or a later one is saved")
+                   "Tick of the screenshot; a snapshot of this tick or a later one is saved")
         .needs(shot)
         .check(WholeNumber{});
     const auto recording =

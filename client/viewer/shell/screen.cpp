@@ -14,10 +14,6 @@ namespace evod::viewer {
 
 namespace {
 
-// Vertical sync limits the frame rate. For displays without vertical sync, a frame takes at least this long. The limit
-// is short enough not to miss a frame at 60 Hz.
-constexpr std::chrono::milliseconds frame_min{15};
-
 // Number of frames after an event until its effect is visible. Widgets react in the first frame; a list or dialog that
 // they open appears in the second.
 constexpr unsigned settled_frames = 2;

@@ -12,6 +12,7 @@
 #include <SFML/Window/ContextSettings.hpp>
 #include <SFML/Window/Window.hpp>
 
+#include <chrono>
 #include <deque>
 #include <string>
 
@@ -23,6 +24,10 @@ sf::ContextSettings context_settings();
 class Screen {
   public:
     using Clock = core::SnapshotInterpolator::Clock;
+
+    /// Vertical sync limits the frame rate. For displays without vertical sync, a frame takes at least this long. The
+    /// limit is short enough not to miss a frame at 60 Hz.
+    static constexpr std::chrono::milliseconds frame_min{15};
 
     /// Throws std::runtime_error if the window cannot be opened.
     explicit Screen(const Options& options);

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 namespace evod::viewer {
@@ -235,8 +236,9 @@ bool ParameterEdits::update(const evod::v1::ParametersChanged& changed) {
     return next;
 }
 
-bool ParameterEdits::has_pending() const {
-    return std::ranges::any_of(states_, [](const State& state) { return state.pending.has_value(); });
+bool has_pending(const ParameterEdits& edits) {
+    const auto parameters = std::views::iota(std::size_t{0}, edits.registry().size());
+    return std::ranges::any_of(parameters, [&](std::size_t i) { return edits.is_pending(i); });
 }
 
 // ---- one parameter ---------------------------------------------------------------------------------------------

@@ -5,8 +5,6 @@
 // revision on which the edits are based. If another client has changed a parameter since, the server therefore rejects
 // the request.
 //
-// It has more than 30 members: one to read and one to change each state of a parameter.
-//
 // Owner        the parameters panel.
 // Threads      none.
 #pragma once
@@ -81,8 +79,6 @@ class ParameterEdits {
     bool known() const { return !registry_.empty() && revision_ > 0; }
     const std::vector<evod::v1::ParameterDescription>& registry() const { return registry_; }
     std::uint64_t revision() const { return revision_; }
-    /// Returns whether any change takes effect only in the next generation or at a reset.
-    bool has_pending() const;
 
     // The following functions return data of one parameter; `i` is its index in the registry.
 
@@ -142,5 +138,8 @@ class ParameterEdits {
     std::vector<Sent> sent_;     // the values in the pending request
     std::string problem_;
 };
+
+/// Returns whether any change takes effect only in the next generation or at a reset.
+bool has_pending(const ParameterEdits& edits);
 
 } // namespace evod::viewer

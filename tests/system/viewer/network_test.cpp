@@ -44,7 +44,7 @@ TEST_F(NetworkTest, ALinePointsWhereEachOrganismHeads) {
         ASSERT_EQ(ran.status, 0) << ran.output;
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
-        const Camera camera = camera_of(snapshot->about, 1280, 720);
+        const Camera camera = camera_of_screenshot(snapshot->about, 1280, 720);
         const Styles& styles = styles_of({skin == "classic" ? Skin::Classic : Skin::Vivid});
         const Colour line = styles.heading.fill;
         std::size_t ahead = 0, behind = 0;

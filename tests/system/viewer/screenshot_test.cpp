@@ -31,7 +31,8 @@ TEST_F(ScreenshotTest, EveryPixelMatchesTheSnapshot) {
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
         ASSERT_EQ(image.getSize(), (sf::Vector2u{width, height}));
-        const ExpectedFrame expected{codec::decode_plain(snapshot).value(), camera_of(snapshot, width, height)};
+        const ExpectedFrame expected{codec::decode_plain(snapshot).value(),
+                                     camera_of_screenshot(snapshot, width, height)};
         for (const Colour colour : {palette::background, palette::wall, palette::organism, palette::food,
                                     palette::poison, palette::crate, palette::crate_edge, palette::obstacle}) {
             EXPECT_GT(expected.count(colour), 20u);
@@ -49,7 +50,7 @@ TEST_F(ScreenshotTest, HealthIsDrawnAboveEachOrganism) {
     ASSERT_EQ(ran.status, 0) << ran.output;
     sf::Image image;
     ASSERT_TRUE(image.loadFromFile(path));
-    const Camera camera = camera_of(snapshot, 1280, 720);
+    const Camera camera = camera_of_screenshot(snapshot, 1280, 720);
     const auto decoded = codec::decode_plain(snapshot).value();
     const codec::Entities& organisms = decoded.entities->organisms;
     for (std::size_t i = 0; i < organisms.id.size(); ++i) {
@@ -62,6 +63,20 @@ TEST_F(ScreenshotTest, HealthIsDrawnAboveEachOrganism) {
             }
         }
         EXPECT_GE(dark_count, 6u) << "organism " << i; // "1" is the thinnest digit
+    }
+}
+
+TEST_F(ScreenshotTest, ShowsTheSidebarIfItIsWideEnough) {
+    const auto snapshot = known_snapshot();
+    for (const auto& [size, width, has_sidebar] : {std::tuple{"800x450", 800u, true}, {"799x450", 799u, false}}) {
+        PlayingServer server{snapshot};
+        const Ran ran = run_evoview("--server " + server.address() + " --size " + size + " --screenshot " + path +
+                                    " --timeout 600");
+        ASSERT_EQ(ran.status, 0) << ran.output;
+        sf::Image image;
+        ASSERT_TRUE(image.loadFromFile(path));
+        const sf::Color is = image.getPixel(width - 4, 300); // the sidebar is light, the vivid island is dark
+        EXPECT_EQ(is.r > 200 && is.g > 200 && is.b > 200, has_sidebar) << size;
     }
 }
 

@@ -37,8 +37,8 @@ struct ViewTest : testing::Test {
     std::string path = folder.file("frame.png");
 
     sf::Image screenshot(const std::string& arguments) {
-        const Ran ran =
-            run_evoview("--server " + server.address() + " --skin classic " + arguments + " --screenshot " + path);
+        const Ran ran = run_evoview("--server " + server.address() + " --size 1680x720 --skin classic " + arguments +
+                                    " --screenshot " + path);
         EXPECT_EQ(ran.status, 0) << ran.output;
         sf::Image image;
         EXPECT_TRUE(image.loadFromFile(path));
@@ -68,7 +68,8 @@ TEST_F(ViewTest, AReplayShowsTheWorldAsItWas) {
     make_world(server, "one", 421);
     const auto past = replay_snapshot_of(server, "one", at_generation(2));
     EXPECT_EQ(past->about.tick(), 120u);
-    expect_shown(*past, viewport_of(1280, 720), screenshot("--world one --past 2"));
+    const auto height = 720 - static_cast<unsigned>(Timeline::height_pixels);
+    expect_shown(*past, viewport_of(1280, height), screenshot("--world one --past 2"));
     const Ran ran =
         run_evoview("--server " + server.address() + " --world one --past 99 --screenshot " + folder.file("none.png"));
     EXPECT_EQ(ran.status, 1);

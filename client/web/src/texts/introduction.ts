@@ -1,4 +1,5 @@
 // The introduction: three steps for people who see the page for the first time.
+import shared from "../../../../proto/texts/viewers.json";
 
 export interface IntroductionStep {
   title: string;
@@ -8,9 +9,7 @@ export interface IntroductionStep {
 export const introduction_steps: readonly IntroductionStep[] = [
   {
     title: "What you see",
-    text:
-      "Evolution, live: an island with organisms that are bred generation by generation. The ring around each one " +
-      "is its health. Food is green, poison is red.",
+    text: `${shared.what_it_is} The ring around each one is its health. Food is green, poison is red.`,
   },
   {
     title: "What they want",

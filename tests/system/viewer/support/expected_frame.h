@@ -29,6 +29,13 @@ inline Camera camera_of(const evod::v1::SnapshotFrame& snapshot, unsigned width_
     return camera;
 }
 
+/// The camera of a screenshot, whose sidebar is shown if the image is wide enough.
+inline Camera camera_of_screenshot(const evod::v1::SnapshotFrame& snapshot, unsigned width_pixels,
+                                   unsigned height_pixels) {
+    const double sidebar = width_pixels >= 2 * double{sidebar_width} ? sidebar_pixels(width_pixels) : 0;
+    return camera_of(snapshot, width_pixels - static_cast<unsigned>(sidebar), height_pixels);
+}
+
 class ExpectedFrame {
   public:
     struct Mismatch {

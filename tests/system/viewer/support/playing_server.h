@@ -56,7 +56,9 @@ class PlayingServer {
                 session.send(answer);
                 continue;
             }
-            command_count_ += !request.has_get_statistics();
+            const bool is_query = request.has_get_statistics() || request.has_get_parameters() ||
+                                  request.has_get_history() || request.has_list_worlds() || request.has_describe();
+            command_count_ += !is_query;
             auto& statistics = *answer.mutable_response()->mutable_statistics();
             auto& world = *statistics.mutable_world();
             world.set_name(snapshot_.world());

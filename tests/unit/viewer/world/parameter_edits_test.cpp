@@ -237,7 +237,7 @@ TEST_F(ParameterEditsTest, APendingValueIsTheRequestedOne) {
     auto set = set_of(8);
     *set.mutable_parameters(food_count)->mutable_pending() = count(60);
     edits.update(set);
-    EXPECT_TRUE(edits.has_pending());
+    EXPECT_TRUE(has_pending(edits));
     EXPECT_EQ(edits.current_value(food_count).count(), 25u);
     EXPECT_EQ(edits.shown(food_count).count(), 60u);
     edits.edit(food_count, count(60));
