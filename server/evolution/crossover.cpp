@@ -53,8 +53,8 @@ std::uint64_t draw_below(std::uint64_t bound, base::RandomStream& random) {
 /// other bits are those of the uniform number.
 constexpr std::uint32_t is_spread = 1, is_swapped = 2;
 
-/// Returns β of a child whose bound is `room` beyond the parent, relative to the distance of the parents: its cumulative
-/// probability is `uniform` if the distribution is cut off at the bound.
+/// Returns β of a child whose bound is `room` beyond the parent, relative to the distance of the parents: its
+/// cumulative probability is `uniform` if the distribution is cut off at the bound.
 double spread_factor(double uniform, double room, double index) {
     const double mass =
         2 - base::pow(1 + 2 * room, -(index + 1)); // twice the probability of the values within the bound

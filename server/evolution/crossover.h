@@ -54,8 +54,8 @@ class Crossover {
     /// blend         the weight of the second parent is (k + ½)/2^32, where each of the 2^32 values of k is equally
     ///               likely; draws one word. The weight is never ½, and 1 − weight is exact. The mask contains all
     ///               genes if the weight is above ½, otherwise none.
-    /// simulated_binary  draws one word per gene. With probability ½ the gene is spread; a gene that is spread comes from
-    ///               the second parent with probability ½. Other genes stay with their parents.
+    /// simulated_binary  draws one word per gene. With probability ½ the gene is spread; a gene that is spread comes
+    ///               from the second parent with probability ½. Other genes stay with their parents.
     /// none          always false.
     bool draw(Mixture<extent>& mixture, base::RandomStream& random) const;
 
@@ -91,8 +91,8 @@ template <std::size_t extent>
 void blend(std::span<const float, extent> first, std::span<const float, extent> second, double second_share,
            std::span<float, extent> child);
 
-/// Returns the position of a child's gene under simulated binary crossover, as spread() computes it. `near` is the gene of
-/// the parent that the child takes after, within the bounds min and max.
+/// Returns the position of a child's gene under simulated binary crossover, as spread() computes it. `near` is the gene
+/// of the parent that the child takes after, within the bounds min and max.
 double spread_position(double near, double far, std::uint32_t word, double min, double max, double index);
 
 /// Order crossover of two permutations of 0 … n − 1: `child` gets the slice of `near`, and then, from behind the slice

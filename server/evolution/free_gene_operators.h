@@ -1,9 +1,9 @@
-// Free gene operators: initial values, crossover and mutation of free genes that have a list (free_genes.h). They follow
-// the same parameters as the other genes, but every gene keeps to its own values.
+// Free gene operators: initial values, crossover and mutation of free genes that have a list (free_genes.h). They
+// follow the same parameters as the other genes, but every gene keeps to its own values.
 //
 // Determinism  the caller passes the stream. The number of words drawn depends on which genes change.
-// Source       Davis 1985, "Applying adaptive algorithms to epistatic domains" (order crossover); Goldberg 1989, Genetic
-//              Algorithms in Search, Optimization and Machine Learning, 5 (order crossover as written here).
+// Source       Davis 1985, "Applying adaptive algorithms to epistatic domains" (order crossover); Goldberg 1989,
+//              Genetic Algorithms in Search, Optimization and Machine Learning, 5 (order crossover as written here).
 #pragma once
 
 #include "server/base/random.h"
@@ -34,8 +34,8 @@ class FreeGeneOperators {
     /// Gives the listed genes of `child` their values after a crossover.
     ///
     /// permutation  order crossover: the slice of the nearer parent, then the other parent's elements that are not in
-    ///              it, in their order, from behind the slice and around the end. The nearer parent is the second one if
-    ///              the mask contains the permutation's first gene.
+    ///              it, in their order, from behind the slice and around the end. The nearer parent is the second one
+    ///              if the mask contains the permutation's first gene.
     /// choice       that of the parent that the mask states.
     /// number       blend and simulated_binary compute with positions (GeneValues), and the value nearest to the result
     ///              is taken; other methods copy.
@@ -44,10 +44,11 @@ class FreeGeneOperators {
     void cross(ConstGenes first, ConstGenes second, const GeneMask<>& from_second, const Mixture<>& mixture,
                Genes child) const;
 
-    /// Mutates the listed genes of mutate_group as ValueMutation describes, with these differences. A number with a step
-    /// moves by at least one step when it creeps, and every value is equally likely when it is reset or drawn again. It
-    /// is mirrored half a step beyond its bounds, so the uniform law stays the same. A choice creeps to any other
-    /// choice. A logarithmic number creeps, is reset and is mirrored by its logarithm. Permutations do not change.
+    /// Mutates the listed genes of mutate_group as ValueMutation describes, with these differences. A number with a
+    /// step moves by at least one step when it creeps, and every value is equally likely when it is reset or drawn
+    /// again. It is mirrored half a step beyond its bounds, so the uniform law stays the same. A choice creeps to any
+    /// other choice. A logarithmic number creeps, is reset and is mirrored by its logarithm. Permutations do not
+    /// change.
     ///
     /// change(gene, kind, value)  must set a gene.
     /// returns  the number of genes that left their bounds.
@@ -61,8 +62,8 @@ class FreeGeneOperators {
     /// Draws values for one chromosome: every value is equally likely, a logarithmic number by its logarithm, and every
     /// order of a permutation.
     void draw(Genes genes, base::RandomStream& random) const;
-    /// Replaces the numbers and choices of an island's first generation by a Latin hypercube: with n organisms, each n-th
-    /// part of a gene's range contains the gene of exactly one organism.
+    /// Replaces the numbers and choices of an island's first generation by a Latin hypercube: with n organisms, each
+    /// n-th part of a gene's range contains the gene of exactly one organism.
     void fill_latin_hypercube(GeneMatrix& genes, const base::RandomKey& key) const;
 
     /// Returns the listed gene (its index in a chromosome) with a value that its entry does not allow; nullopt if there

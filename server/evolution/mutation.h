@@ -81,8 +81,9 @@ class ValueMutation {
     /// reset     replaces each gene with probability reset_chance by a value uniform within its bounds.
     /// scale     with probability scale_chance, multiplies one gene by 1 + scale_range · U; U is uniform in (−1, 1).
     ///           Each gene is equally likely. Draws the chance, the gene and one word.
-    /// bounds    brings each gene that is outside its bounds back, and counts it: to the nearer bound, to its mirror image
-    ///           at the bound (repeatedly if need be), or to a uniform value within the bounds, as out_of_bounds states.
+    /// bounds    brings each gene that is outside its bounds back, and counts it: to the nearer bound, to its mirror
+    ///           image at the bound (repeatedly if need be), or to a uniform value within the bounds, as out_of_bounds
+    ///           states.
     /// bit flip  flips each bit of each gene's BinaryView with probability bit_flip_chance. A gene without a flipped
     ///           bit keeps its exact value. A gene with one gets the value of its new code.
     ///

@@ -105,7 +105,8 @@ class Checker {
         const double largest = std::max(std::abs(gene.min), std::abs(gene.max));
         if (gene.step == 1 && largest > whole_max) {
             refuse(std::abs(gene.min) > whole_max ? ".min" : ".max",
-                   "whole numbers within ±16777216, which float32 contains", number_text(largest));
+                   "whole numbers within ±16777216, which float32 contains",
+                   number_text(std::abs(gene.min) > whole_max ? gene.min : gene.max));
         } else if (gene.step < largest / whole_max) {
             refuse(".step", "at least " + number_text(largest / whole_max) + ", because values are float32",
                    number_text(gene.step));
@@ -175,8 +176,9 @@ class GeneReader {
             read_choices(member, gene);
         } else if (gene.kind == FreeGene::Kind::Permutation && member.name == "permutation") {
             const auto count = value.whole_number();
-            count &&*count >= 2 &&*count <= listed_genes_max          ? gene.count = static_cast<std::uint32_t>(*count),
-                                                        void() : refuse(member, "2 to " + std::to_string(listed_genes_max));
+            count &&*count >= 2 &&*count <= listed_genes_max
+                ? gene.count = static_cast<std::uint32_t>(*count),
+                  void() : refuse(member, "2 to " + std::to_string(listed_genes_max));
         } else {
             refuse(member, is_number ? "name, min, max, step, scale, mutation_step, choices or permutation"
                                      : "no other field than name with choices or permutation");

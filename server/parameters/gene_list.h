@@ -21,9 +21,9 @@
 namespace evod::parameters {
 
 /// Returns what is wrong with a list: names that are not valid or not unique; bounds that are not finite, in the wrong
-/// order or beyond ±1e12; steps that do not lead from min to max, or that float32 cannot tell apart near the bounds (so
-/// whole numbers are within ±2^24); a logarithmic gene with min <= 0 or a step; fewer than 2 or more than 1000 choices;
-/// more than 1000 genes. Violations are named `field` + "[2].step".
+/// order or beyond ±1e12; steps that do not lead from min to max, or that float32 cannot distinguish near the bounds
+/// (so whole numbers are within ±2^24); a logarithmic gene with min <= 0 or a step; fewer than 2 or more than 1000
+/// choices; more than 1000 genes. Violations are named `field` + "[2].step".
 std::vector<base::Violation> faults_of(std::span<const evolution::FreeGene> list, std::string_view field);
 
 /// Reads a list from a JSON array, and checks it. Adds violations, which name the field and its line.

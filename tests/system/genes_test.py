@@ -66,9 +66,9 @@ class Genes(access.Access):
         self.assertEqual(client.world("free").gene_names[-1], "free9")
         self.assertEqual(list(client.world("list").gene_names[6:]),
                          ["angle", "rate", "layers", "material", *(f"tour{i}" for i in range(6))])
-        told = client.world("list").free_genes.genes
-        self.assertEqual([gene.name for gene in told], [gene["name"] for gene in LIST])
-        self.assertEqual(list(told[3].choices), LIST[3]["choices"])
+        listed = client.world("list").free_genes.genes
+        self.assertEqual([gene.name for gene in listed], [gene["name"] for gene in LIST])
+        self.assertEqual(list(listed[3].choices), LIST[3]["choices"])
         self.assertFalse(client.world("free").HasField("free_genes"))
         self.assertEqual(client.world("net").gene_names[6], "hidden1<food_bearing")
         self.assertEqual(client.world("net").gene_names[-1], "turn<bias")
@@ -126,7 +126,8 @@ class Genes(access.Access):
 
     def test_a_reset_replaces_and_removes_the_list(self):
         server, client = self.begin()
-        two = w.FreeGeneList(genes=[w.FreeGene(name="x", min=0, max=3, step=1), w.FreeGene(name="y", choices=["a", "b"])])
+        two = w.FreeGeneList(genes=[w.FreeGene(name="x", min=0, max=3, step=1),
+                                    w.FreeGene(name="y", choices=["a", "b"])])
         client.call(reset_world=c.ResetWorld(world="list", free_genes=two))
         self.assertEqual(list(client.world("list").gene_names[6:]), ["x", "y"])
         client.call(reset_world=c.ResetWorld(world="list"))

@@ -310,6 +310,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("proto/codec", "result"): "unit/codec/framing_test",
     ("server", "main"): "system/console_test",
     ("server/base", "column"): "unit/physics and unit/simulation: the memory of all columns",
+    ("server/evolution", "free_genes"): "unit/evolution/free_gene_operators_test",
     ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/run_file_fork and replay/verify",
     ("server/commands", "json_lines"): "unit/commands/run_test, sweep_test and compare_test: options of these commands",

@@ -13,7 +13,7 @@ ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
 class Real(dict[str, Any]):
-    """A real number in the list of the free genes: `free_genes=[evod.genes.Real("rate", 0.001, 1, scale="logarithmic")]`.
+    """A real number in the list of the free genes: `evod.genes.Real("rate", 0.001, 1, scale="logarithmic")`.
 
     Parameters
     ----------
@@ -44,8 +44,9 @@ class Integer(Real):
 
 
 class Choice(dict[str, Any]):
-    """One of several values in the list of the free genes: `evod.genes.Choice("material", ["steel", "wood"])`. The gene is
-    the index of the choice, from 0."""
+    """One of several values in the list of the free genes: `evod.genes.Choice("material", ["steel", "wood"])`.
+
+    The gene is the index of the choice, from 0."""
 
     def __init__(self, name: str, choices: Iterable[object]) -> None:
         super().__init__(name=name, choices=[str(choice) for choice in choices])

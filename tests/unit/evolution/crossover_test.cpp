@@ -307,9 +307,10 @@ void spread_often(float first, float second, double index, std::uint64_t seed, c
 }
 
 TEST(Crossover, SimulatedBinaryFollowsTheLawOfItsSpread) {
-    // Law: a gene is spread with probability 1/2. Its β = |difference of the children| / |difference of the parents| has
-    // the cumulative probability β^(n + 1) / 2 up to 1, and 1 − β^−(n + 1) / 2 beyond. The parents are so near to each
-    // other that the bounds cut off less than 1e-9. Chi-square over 20 equally likely cells, 19 degrees of freedom.
+    // Law: a gene is spread with probability 1/2. Its β = |difference of the children| / |difference of the parents|
+    // has the cumulative probability β^(n + 1) / 2 up to 1, and 1 − β^−(n + 1) / 2 beyond. The parents are so near to
+    // each other that the bounds cut off less than 1e-9. Chi-square over 20 equally likely cells, 19 degrees of
+    // freedom.
     for (const double index : {2.0, 15.0}) {
         std::vector<std::uint64_t> cells(20);
         std::uint64_t copies = 0, swaps = 0, spreads = 0;

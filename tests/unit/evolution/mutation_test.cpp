@@ -353,9 +353,9 @@ void free_mutants(const Parameters& parameters, const Start& start, std::uint64_
 }
 
 TEST(Creep, PolynomialStepsFollowTheirLaw) {
-    // Law: with d = step / (max − min), the cumulative probability of d < 0 is (1 + d)^(n + 1) / 2, cut off at the lower
-    // bound by the share that lies beyond, and likewise for d > 0. Chi-square over 20 equally likely cells, 19 degrees
-    // of freedom, for genes in the middle of their bounds and at a tenth of them.
+    // Law: with d = step / (max − min), the cumulative probability of d < 0 is (1 + d)^(n + 1) / 2, cut off at the
+    // lower bound by the share that lies beyond, and likewise for d > 0. Chi-square over 20 equally likely cells, 19
+    // degrees of freedom, for genes in the middle of their bounds and at a tenth of them.
     for (const double at : {0.5, 0.1}) {
         Parameters parameters = twenty_free_genes();
         parameters.mutation_chance = 1;

@@ -80,7 +80,7 @@ TEST(GeneList, FaultsNameTheGeneAndItsField) {
     for (const Case& wrong : cases) {
         const auto refused = parse_gene_list(wrong.list);
         ASSERT_FALSE(refused) << wrong.list;
-        const auto& violation = refused.error().violations.at(0);
+        const base::Violation violation = refused.error().violations.at(0);
         EXPECT_THAT(violation.field, testing::StartsWith(wrong.field)) << wrong.list;
         EXPECT_THAT(violation.allowed, testing::HasSubstr(wrong.allowed)) << wrong.list;
     }

@@ -83,8 +83,8 @@ TEST(Requests, RefuseNanAndInfinityInEveryNumber) {
             poison_doubles(request, part, poison, poisoned);
         }
     }
-    // Two lists of parameters, a schedule, a speed, a rate, two regions, two positions, a fitness; four numbers of a gene
-    // in each of two lists.
+    // Two lists of parameters, a schedule, a speed, a rate, two regions, two positions, a fitness; four numbers of a
+    // gene in each of two lists.
     EXPECT_EQ(poisoned, 3 * 26);
 }
 

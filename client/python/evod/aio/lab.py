@@ -527,8 +527,8 @@ class World(ParameterAttributes, WorldQueries):
         """Starts a new run at generation 1, with the given seed, or by default the same seed. The world waits for
         `run`.
 
-        free_genes is the list of the free genes from now on (`evod.genes.Real` and its neighbours); [] removes the list.
-        By default the list stays."""
+        free_genes is the list of the free genes from now on (`evod.genes.Real` and its neighbours); [] removes the
+        list. By default the list stays."""
         listed = None if free_genes is None else plans.gene_list(free_genes)
         return await self._command("reset_world", seed=seed, free_genes=listed)
 

@@ -36,7 +36,8 @@ export class Summary {
     this.#server = server;
     this.#tools = tools;
     this.#run_bar = new RunBar(context);
-    this.#part = h("button", {type: "button", onclick: () => server.access.set_taking_part(!server.access.taking_part)});
+    const {access} = server;
+    this.#part = h("button", {type: "button", onclick: () => access.set_taking_part(!access.taking_part)});
     this.element = h(
       "div", {class: "summary"},
       h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,

@@ -134,8 +134,8 @@ export const breeding_texts = {
     MUTATION_KIND_SCALE: "scale",
     MUTATION_KIND_BIT_FLIP: "bit flip",
     MUTATION_KIND_CLAMP: "clamped",
-    MUTATION_KIND_REFLECT: "mirrored at its bound",
-    MUTATION_KIND_REDRAW: "drawn again within its bounds",
+    MUTATION_KIND_REFLECT: "mirrored",
+    MUTATION_KIND_REDRAW: "drawn afresh",
   },
   /** "hidden3<bias: 0.42 of parent 12, creep to 0.5"
    *
