@@ -130,7 +130,7 @@ class Compare(Folder):
             (["--controls", "--seed", "-1"], 2, "--seed"),
             (["--controls", "--set", "mutation_chance=2"], 1, "--set mutation_chance: got 2, allowed 0 to 1"),
             (["--controls", "--set", "shuffle_fitness=perhaps"], 1,
-             "--set shuffle_fitness: got perhaps, allowed true or false"),
+             '--set shuffle_fitness: got "perhaps", allowed true or false'),
             ([self.folder.name, "--controls"], 1, "this is a folder"),
             ([self.file('{"food_count": -3}', "bad.json"), "--controls"], 1, "food_count (line 1): got -3"),
             ([self.file('{"generation_limit": 1}', "short.json"), "--controls"], 1,

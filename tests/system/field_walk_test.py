@@ -196,8 +196,8 @@ class Walk(access.Access):
             self.assertEqual(status.code != OK, refused, said)
         if status.code == INVALID and "is not a" not in status.message:  # for messages that can be parsed
             named = [re.sub(r"\[\d+\]", "", violation.field) for violation in status.violations]  # x[2].y: x.y
-            # the field is named as the parameter or gene that it sets; an item or organism may lack other fields
-            if re.search(r"\.(parameters|population|schedule|items|organisms)\.", path):
+            # the field is named as the parameter or gene that it sets; an item, organism or free gene may lack others
+            if re.search(r"\.(parameters|population|schedule|items|organisms|free_genes)\.", path):
                 self.assertTrue([x for x in named if x.startswith(path.split(".")[0] + ".")], said)
             else:
                 self.assertTrue([x for x in named if path == x or path.startswith(x + ".")], said)

@@ -369,11 +369,12 @@ def gene_list(genes: Sequence[Mapping[str, object]]) -> world_pb2.FreeGeneList:
     """
     message = world_pb2.FreeGeneList()
     for index, gene in enumerate(genes):
-        fields = {**gene, "logarithmic": gene.get("scale", "linear") == "logarithmic"}
+        fields: dict[str, Any] = {**gene, "logarithmic": gene.get("scale", "linear") == "logarithmic"}
         if fields.pop("scale", "linear") not in ("linear", "logarithmic"):
             raise wrong_argument(f"free_genes[{index}].scale", '"linear" or "logarithmic"', repr(gene["scale"]))
         try:
-            message.genes.add(**{"name": f"free{index}", **fields})
+            fields.setdefault("name", f"free{index}")
+            message.genes.add(**fields)
         except (TypeError, ValueError) as error:
             raise wrong_argument(f"free_genes[{index}]", "a gene such as evod.genes.Real(\"rate\", 0, 1)",
                                  repr(gene)) from error
