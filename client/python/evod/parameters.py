@@ -70,7 +70,8 @@ class Description:
             return None
         try:
             if self.kind == "count":
-                count = operator.index(value)  # type: ignore[arg-type]
+                whole = isinstance(value, (float, numpy.floating)) and float(value).is_integer()
+                count = operator.index(int(value) if whole else value)  # type: ignore[call-overload]
                 return world_pb2.ParameterValue(count=count) if self.min <= count <= self.max else None
             real = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):

@@ -7,7 +7,7 @@
 #include "client/viewer/panels/fitness_curve.h"
 #include "client/viewer/world/status_text.h"
 
-#include "text/shared_texts.h"
+#include "client/viewer/text/shared_texts.h"
 
 #include <imgui.h>
 

@@ -26,7 +26,7 @@ class SamePlace(Case):
         under_xvfb = HERE.parent / "viewer" / "under_xvfb.sh"
         done = waiting.run([str(under_xvfb), os.environ["EVOVIEW"], "--server", f"127.0.0.1:{server.port}", "--skin",
                             "classic",
-                            "--size", "1280x720", "--screenshot", str(file), "--at-tick", "120", "--timeout", "600"],
+                            "--size", "790x720", "--screenshot", str(file), "--at-tick", "120", "--timeout", "600"],
                            capture_output=True, text=True)
         if done.returncode == 77:
             self.skipTest(done.stdout)
