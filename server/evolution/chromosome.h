@@ -71,7 +71,8 @@ unsigned clamp(std::span<float, extent> genes, const GeneBounds& bounds);
 /// [initial_gene_min, initial_gene_max], weights in their initial range, and free genes in their bounds.
 ///
 /// organism_count  the size of the island's population; may be 0.
-/// returns         shape (gene_count, organism_count); a larger population begins with the organisms of a smaller one.
+/// returns         shape (gene_count, organism_count). A larger population begins with the organisms of a smaller one,
+///                 unless free_gene_start is latin_hypercube.
 GeneMatrix initial_population(std::uint32_t organism_count, const Parameters& parameters, base::Seed seed,
                               std::uint32_t island);
 

@@ -1,7 +1,5 @@
 #include "server/evolution/free_gene_operators.h"
 
-#include "server/base/assert.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
