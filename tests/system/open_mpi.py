@@ -2,7 +2,7 @@
 PRTE_MCA_….
 
 Jobs run as root, without a network, with more processes than processors, and without a processor of its own for each of
-them.
+them. hwloc must not look for screens: a process ends when the Xvfb of another test ends while it looks.
 """
 
 OPEN_MPI = {
@@ -14,5 +14,6 @@ OPEN_MPI = {
     "PRTE_MCA_hwloc_default_binding_policy": "none",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+    "HWLOC_COMPONENTS": "-gl",
     "OMPI_MCA_mpi_yield_when_idle": "1",
 }
