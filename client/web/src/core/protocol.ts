@@ -1062,6 +1062,8 @@ export interface Response extends Partial<ResponseAnswers> {
   status?: Status;
   /** Commands only: the change holds from this tick, counted from the start of the run. */
   applied_tick?: number;
+  /** CreateWorld, ResetWorld and SetParameters: sentences about values that are allowed, but with which nothing can evolve. */
+  warnings?: string[];
 }
 
 /** A value in the message of a refusal, for programs. The names, and the reasons whose refusals contain them:
@@ -1295,8 +1297,12 @@ export interface SetFitness {
   island?: number;
   /** id of the first rated organism: 0, or the number of organisms that have been rated so far */
   first_organism?: number;
-  /** The fitness of this organism and of those after it, larger is better: at least one number, -1e100 to 1e100. */
+  /** The fitness of this organism and of those after it, larger is better: at least one number, -1e100 to 1e100. If the
+   *  parameter `objectives` is above 1, each organism has so many numbers, one organism after another. */
   fitness?: number[];
+  /** Repaired chromosomes, which replace those of the rated organisms: gene count values for each organism in `fitness`,
+   *  within the bounds of the genes. Empty: the chromosomes stay. */
+  genes?: number[];
 }
 
 export interface ListWorlds {}
@@ -1661,6 +1667,9 @@ export interface Population {
   food_eaten?: Uint8Array;
   /** u32 */
   poison_eaten?: Uint8Array;
+  /** f64: the given fitness of organisms of a generation that has been rated, one column per objective (parameter
+   *  `objectives`); otherwise empty. */
+  objectives?: Uint8Array;
 }
 
 /** Reads statistics of the movements and overlaps of bodies, measured after the last tick. */
