@@ -23,7 +23,11 @@ constexpr Question questions[] = {
     {"generation_s", always},
     {"generation_limit", always},
     {"population_model", always},
-    {"survivors", [](const Parameters& p) { return p.population_model == evolution::PopulationModel::Hybrid; }},
+    {"survivors",
+     [](const Parameters& p) {
+         return p.population_model == evolution::PopulationModel::Hybrid ||
+                p.population_model == evolution::PopulationModel::Nsga2;
+     }},
     {"replaced_count",
      [](const Parameters& p) { return p.population_model == evolution::PopulationModel::SteadyState; }},
     {"elite_count", always},

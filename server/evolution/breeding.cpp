@@ -49,6 +49,17 @@ std::vector<std::uint32_t> elite_then_best(std::span<const std::uint32_t> best_f
     return survivors;
 }
 
+/// Performs select() among the best `candidates` organisms.
+std::vector<std::uint32_t> select_among_best(Ranking& ranking, std::uint32_t candidates, const Picks& picks,
+                                             const Parameters& parameters, const base::RandomKey& key,
+                                             base::Executor& executor) {
+    const std::vector<double> fitness = ranking.best_fitness(candidates);
+    Ranking among{fitness, executor};
+    std::vector<std::uint32_t> picked = select(among, picks, parameters, key, executor);
+    std::ranges::transform(picked, picked.begin(), [&](std::uint32_t rank) { return ranking.best_first()[rank]; });
+    return picked;
+}
+
 } // namespace
 
 Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameters& parameters) {
@@ -61,6 +72,9 @@ Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameter
     case PopulationModel::Hybrid:
         survivors = share_of(wanted, parameters.survivors);
         break;
+    case PopulationModel::Nsga2:
+        survivors = std::min(present, share_of(wanted, parameters.survivors));
+        break;
     case PopulationModel::Generational:
         break;
     case PopulationModel::SteadyState:
@@ -71,12 +85,17 @@ Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameter
     return {.elite = elite, .survivors = survivors, .children = wanted - survivors};
 }
 
-Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters) {
-    if (parameters.population_model == PopulationModel::Hybrid) {
-        return {.wanted = places.survivors, .pool = present};
+std::uint32_t candidate_count(const Places& places, std::uint32_t present, const Parameters& parameters) {
+    return parameters.population_model == PopulationModel::Nsga2 ? places.survivors : present;
+}
+
+Picks picks_for(const Places& places, std::uint32_t candidates, const Parameters& parameters) {
+    const PopulationModel model = parameters.population_model;
+    if (model == PopulationModel::Hybrid) {
+        return {.wanted = places.survivors, .pool = candidates};
     }
     return {.wanted = places.children > 0 ? std::max(2u, places.children) : 0,
-            .pool = share_of(present, parameters.survivors)};
+            .pool = model == PopulationModel::Nsga2 ? candidates : share_of(candidates, parameters.survivors)};
 }
 
 base::RandomKey selection_key(const BreedingKey& key) {
@@ -88,9 +107,12 @@ Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t want
     const auto present = static_cast<std::uint32_t>(ranking.fitness().size());
     Choice choice;
     const Places& places = choice.places = share_places(present, wanted, parameters);
-    const Picks picks = picks_for(places, present, parameters);
-    if (picks.wanted > 0) {
+    const std::uint32_t candidates = candidate_count(places, present, parameters);
+    const Picks picks = picks_for(places, candidates, parameters);
+    if (picks.wanted > 0 && candidates == present) {
         choice.picks = select(ranking, picks, parameters, selection_key(key), executor);
+    } else if (picks.wanted > 0) {
+        choice.picks = select_among_best(ranking, candidates, picks, parameters, selection_key(key), executor);
     }
     const bool hybrid = parameters.population_model == PopulationModel::Hybrid;
     if (hybrid && places.elite == 0) {

@@ -32,9 +32,14 @@ struct Choice {
     std::vector<std::uint32_t> others; // the survivors, unless they are the picks
 };
 
+/// Returns the number of organisms among which selection picks, of `present`: the best ones, or all.
+std::uint32_t candidate_count(const Places& places, std::uint32_t present, const Parameters& parameters);
+
 /// Returns the arguments of select(): the number of picks, and the pool to pick from. If Picks::wanted is 0, the caller
 /// must not call select().
-Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters);
+///
+/// candidates  candidate_count().
+Picks picks_for(const Places& places, std::uint32_t candidates, const Parameters& parameters);
 
 /// Returns the key of the random draws, to be passed to select().
 base::RandomKey selection_key(const BreedingKey& key);

@@ -32,8 +32,9 @@ bool spins_a_wheel(const Parameters& parameters) {
            parameters.selection == SelectionMethod::StochasticUniversal;
 }
 
-std::vector<Contender> contenders_of(Ranking& ranking, std::span<const std::uint32_t> picks, const Picks& asked,
-                                     const Parameters& parameters, const Rows& rows) {
+/// candidates  candidate_count(); the organisms that are not among them can't be picked.
+std::vector<Contender> contenders_of(Ranking& ranking, std::uint32_t candidates, std::span<const std::uint32_t> picks,
+                                     const Picks& asked, const Parameters& parameters, const Rows& rows) {
     const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
     std::vector<std::uint32_t> ranks(population), copies(population);
     for (std::uint32_t rank = 0; rank < population; ++rank) {
@@ -42,31 +43,38 @@ std::vector<Contender> contenders_of(Ranking& ranking, std::span<const std::uint
     for (const std::uint32_t organism : picks) {
         ++copies[organism];
     }
-    const std::vector<double> weights = scaled_fitness(ranking, parameters);
+    const bool are_all = candidates == population;
+    const std::vector<double> best = are_all ? std::vector<double>{} : ranking.best_fitness(candidates);
+    Ranking among_best{best};
+    const std::vector<double> weights = scaled_fitness(are_all ? ranking : among_best, parameters);
     std::optional<Wheel> wheel;
     if (spins_a_wheel(parameters)) {
         wheel.emplace(weights);
     }
-    const SelectionLaw law{population, asked, parameters};
+    const SelectionLaw law{candidates, asked, parameters};
 
     std::vector<Contender> contenders;
     for (std::uint32_t i = rows.first; i < rows.end; ++i) {
         Contender& contender = contenders.emplace_back();
         contender.fitness = ranking.fitness()[i];
         contender.rank = ranks[i];
-        contender.weight = weights[i];
+        if (ranks[i] >= candidates) {
+            continue;
+        }
+        const std::uint32_t candidate = are_all ? i : ranks[i];
+        contender.weight = weights[candidate];
         if (wheel) {
             const std::span<const double> ends = wheel->slot_ends();
-            contender.slot_begin = i == 0 ? 0 : ends[i - 1] / ends.back();
-            contender.slot_end = ends[i] / ends.back();
+            contender.slot_begin = candidate == 0 ? 0 : ends[candidate - 1] / ends.back();
+            contender.slot_end = ends[candidate] / ends.back();
         }
-        contender.law = law.copies(ranks[i], wheel ? wheel->share(i) : 0);
+        contender.law = law.copies(ranks[i], wheel ? wheel->share(candidate) : 0);
         contender.copies = copies[i];
     }
     return contenders;
 }
 
-std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t population,
+std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, Ranking& ranking, std::uint32_t candidates,
                            const Parameters& parameters, const base::RandomKey& key, const Rows& rows,
                            base::Executor& executor) {
     const auto wanted = static_cast<std::uint32_t>(picked.size());
@@ -89,11 +97,15 @@ std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t 
         if (parameters.selection != SelectionMethod::Tournament) {
             continue;
         }
-        pick.tournament = i / winners_of_each(population, tournament, wanted);
+        pick.tournament = i / winners_of_each(candidates, tournament, wanted);
         const std::uint32_t contestants =
-            tournament.replacement ? tournament.size : std::min(tournament.size, population);
+            tournament.replacement ? tournament.size : std::min(tournament.size, candidates);
         if (contestants <= held_contestants_max) {
-            pick.contestants = contestants_of(*pick.tournament, population, tournament, wanted, key);
+            pick.contestants = contestants_of(*pick.tournament, candidates, tournament, wanted, key);
+        }
+        if (candidates < ranking.fitness().size()) {
+            std::ranges::transform(pick.contestants, pick.contestants.begin(),
+                                   [&](std::uint32_t rank) { return ranking.best_first()[rank]; });
         }
     }
     return picks;
@@ -141,9 +153,11 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
     record.places = choice.places;
     record.contender_count = present;
     record.pick_count = pick_count;
-    record.contenders = contenders_of(ranking, choice.picks, picks_for(choice.places, present, parameters), parameters,
-                                      {rows.first_contender, present, rows.count_max});
-    record.picks = picks_of(choice.picks, present, parameters, selection_key(key),
+    const std::uint32_t candidates = candidate_count(choice.places, present, parameters);
+    record.contenders =
+        contenders_of(ranking, candidates, choice.picks, picks_for(choice.places, candidates, parameters), parameters,
+                      {rows.first_contender, present, rows.count_max});
+    record.picks = picks_of(choice.picks, ranking, candidates, parameters, selection_key(key),
                             {rows.first_pick, pick_count, rows.count_max}, executor);
 
     const Descent<> descent{genes, parameters, key};

@@ -9,7 +9,7 @@
 
 namespace evod::evolution {
 
-enum class PopulationModel { Hybrid, Generational, SteadyState };
+enum class PopulationModel { Hybrid, Generational, SteadyState, Nsga2 };
 enum class FitnessScaling { None, Windowing, LinearRanking, ExponentialRanking };
 enum class SelectionMethod { Roulette, StochasticUniversal, Tournament, Random, Truncation };
 enum class CrossoverMethod { Uniform, SinglePoint, MultiPoint, Blend, None, SimulatedBinary };
@@ -26,7 +26,7 @@ enum class Locomotion { Newtonian, Kinematic };
 
 } // namespace evod::evolution
 
-EVOD_CHOICE_NAMES(evod::evolution::PopulationModel, "hybrid", "generational", "steady_state")
+EVOD_CHOICE_NAMES(evod::evolution::PopulationModel, "hybrid", "generational", "steady_state", "nsga2")
 EVOD_CHOICE_NAMES(evod::evolution::FitnessScaling, "none", "windowing", "linear_ranking", "exponential_ranking")
 EVOD_CHOICE_NAMES(evod::evolution::SelectionMethod, "roulette", "stochastic_universal", "tournament", "random",
                   "truncation")
@@ -47,8 +47,8 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
 #define EVOD_EVOLUTION_PARAMETERS(TOPIC, REAL, COUNT, FLAG, CHOICE)                                                    \
     TOPIC("Population")                                                                                                \
     COUNT(population_size, 50, 1, 4'000'000, "organisms", NextGeneration, "Organisms on each island.")                 \
-    CHOICE(population_model, PopulationModel, Hybrid, NextTick, "How a generation replaces the previous one: hybrid keeps the selected organisms and adds their children, generational replaces all organisms except the elite, steady_state replaces only the worst organisms.") \
-    REAL(survivors, 0.5, 0, 1, "share", NextTick, "Population model hybrid: share of the population that survives and breeds. Other population models with truncation selection: share that may breed. At least one organism.") \
+    CHOICE(population_model, PopulationModel, Hybrid, NextTick, "How a generation replaces the previous one: hybrid keeps the selected organisms and adds their children, generational replaces all organisms except the elite, steady_state replaces only the worst organisms, nsga2 keeps the best organisms and adds children of parents that are selected among them.") \
+    REAL(survivors, 0.5, 0, 1, "share", NextTick, "Population models hybrid and nsga2: share of the population that survives and breeds. Other population models with truncation selection: share that may breed. At least one organism.") \
     COUNT(replaced_count, 2, 1, 4'000'000, "organisms", NextTick, "Number of worst organisms that each generation replaces (steady_state).") \
     COUNT(elite_count, 0, 0, 4'000'000, "organisms", NextTick, "Number of best organisms that survive unchanged.")     \
     FLAG(mutate_survivors, false, NextTick, "Whether survivors are mutated too; the elite never are.")                 \

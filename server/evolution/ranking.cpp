@@ -79,4 +79,11 @@ std::span<const std::uint32_t> Ranking::best_first() {
     return best_first_;
 }
 
+std::vector<double> Ranking::best_fitness(std::uint32_t count) {
+    std::vector<double> fitness(count);
+    std::ranges::transform(best_first().first(count), fitness.begin(),
+                           [this](std::uint32_t organism) { return fitness_[organism]; });
+    return fitness;
+}
+
 } // namespace evod::evolution

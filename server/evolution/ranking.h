@@ -26,6 +26,8 @@ class Ranking {
     std::span<const std::uint32_t> best_first();
 
     std::span<const double> fitness() const { return fitness_; }
+    /// Returns the fitness of the best `count` organisms, the fittest first. As best_first().
+    std::vector<double> best_fitness(std::uint32_t count);
 
   private:
     std::span<const double> fitness_;

@@ -24,6 +24,9 @@ Parameters with_random_selection(Parameters p) {
             p.survivors = static_cast<double>(p.population_size - p.replaced_count) / p.population_size;
         }
     }
+    if (p.population_model == PopulationModel::Nsga2) {
+        p.population_model = PopulationModel::Hybrid; // the same number of survivors, drawn at random
+    }
     if (p.migration != Topology::None && p.island_count > 1) {
         p.emigrants = Emigrants::Random;
         p.immigrants_replace = Replaced::Random;

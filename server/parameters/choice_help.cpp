@@ -24,6 +24,8 @@ constexpr Sentence sentences[] = {
     {"population_model", "hybrid", "The selected organisms stay, and their children fill the other places."},
     {"population_model", "generational", "Children replace all organisms except the elite."},
     {"population_model", "steady_state", "Children replace only the worst organisms."},
+    {"population_model", "nsga2",
+     "The best organisms stay, and their children fill the other places; with several objectives this is NSGA-II."},
     {"fitness_scaling", "none",
      "The fitness itself is the weight of an organism. If any is negative, the lowest is first subtracted from all."},
     {"fitness_scaling", "windowing", "The lowest fitness of the generation is subtracted from every fitness."},

@@ -33,6 +33,7 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
 #define EVOD_MODEL_PARAMETERS(TOPIC, REAL, COUNT, FLAG, CHOICE)                                                        \
     TOPIC("Experiment")                                                                                                \
     CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is a weighted sum of seconds lived, health at the end, food eaten and poison eaten, by default seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone; external: at the end of each generation the world waits until a client has sent the fitness of every organism (SetFitness).") \
+    COUNT(objectives, 1, 1, 16, "numbers", Reset, "Numbers with which a client rates each organism, if fitness is external. With several, organisms are ranked by fronts and crowding (NSGA-II), and the first number is the fitness in statistics, charts and termination criteria.") \
     FLAG(external_bodies, true, Reset, "Whether organisms live on the islands before a client rates them, if fitness is external. Off: there are no bodies, and a generation lasts one tick, as for gene_sum.") \
     REAL(fitness_per_second, 1, -1000, 1000, "fitness/s", NextGeneration, "Weight of each second lived in the fitness function life.") \
     REAL(fitness_per_health, 1, -1000, 1000, "fitness/health", NextGeneration, "Weight of each unit of health at the end in the fitness function life; the health of dead organisms is 0.") \

@@ -33,7 +33,9 @@ std::optional<std::string> no_place_for_children(const Parameters& p) {
         return "no child is ever bred, because " + text_of(p, "elite_count") + " is not below " +
                text_of(p, "population_size");
     }
-    if (p.population_model == PopulationModel::Hybrid && p.survivors >= 1) {
+    const bool keeps_a_share =
+        p.population_model == PopulationModel::Hybrid || p.population_model == PopulationModel::Nsga2;
+    if (keeps_a_share && p.survivors >= 1) {
         return "no child is ever bred, because all organisms survive: survivors 1";
     }
     if (p.population_model == PopulationModel::SteadyState && p.replaced_count > p.population_size) {
@@ -45,7 +47,8 @@ std::optional<std::string> no_place_for_children(const Parameters& p) {
 
 /// Returns why fitness has no influence on who breeds.
 std::optional<std::string> no_selection(const Parameters& p) {
-    if (p.elite_count > 0 || p.population_model == PopulationModel::SteadyState) {
+    if (p.elite_count > 0 || p.population_model == PopulationModel::SteadyState ||
+        p.population_model == PopulationModel::Nsga2) {
         return std::nullopt; // the best survive, or the worst are replaced
     }
     const std::string effect = "fitness has no influence on selection: ";

@@ -148,6 +148,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                 to.set_island(set.island);
                 to.set_organism_count(static_cast<std::uint32_t>(set.fitness.size()));
                 if (entry) {
+                    to.set_organism_count(to.organism_count() / (*entry)->world.parameters().active.objectives);
                     add_awaited_islands((*entry)->world, *to.mutable_awaited_islands());
                 }
             },

@@ -151,6 +151,8 @@ std::string about_generations(const Parameters& p) {
                 (p.elite_count == 0 ? "" : " except the " + shown(p.elite_count) + " best") + ".";
     } else if (p.population_model == PopulationModel::SteadyState) {
         text += " Each generation replaces only the " + shown(p.replaced_count) + " worst organisms.";
+    } else if (p.population_model == PopulationModel::Nsga2) {
+        text += " The best organisms survive, and parents are selected among them.";
     } else if (p.mutate_survivors) {
         text += " Survivors mutate, too.";
     }

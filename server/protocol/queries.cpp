@@ -220,6 +220,7 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
                           .founders = {},
                           .intentions = world.intentions(island, ids),
                           .lives = {},
+                          .objectives = {},
                           .tick_s = world.parameters().active.tick_s};
     if (query.with_life() && world.has_bodies()) {
         const auto tick = static_cast<std::uint32_t>(world.moment().generation_tick);
@@ -227,6 +228,11 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
         for (std::size_t id = ids.begin; id < ids.end; ++id) {
             answer.lives.push_back(island.life(static_cast<std::uint32_t>(id), tick));
         }
+    }
+    if (!world.ratings().empty() && world.is_rated(island.index())) {
+        const std::size_t objectives = world.parameters().active.objectives;
+        const std::vector<double>& all = world.ratings()[island.index()].fitness;
+        answer.objectives.assign(all.data() + ids.begin * objectives, all.data() + ids.end * objectives);
     }
     answer.genes =
         born.genes.middleCols(static_cast<Eigen::Index>(ids.begin), static_cast<Eigen::Index>(ids.end - ids.begin));
@@ -270,6 +276,14 @@ v1::Population to_proto(const PopulationRows& rows) {
     append_column(*population.mutable_health(), rows.lives, [](const Life& life) { return life.health; });
     append_column(*population.mutable_food_eaten(), rows.lives, [](const Life& life) { return life.food_eaten; });
     append_column(*population.mutable_poison_eaten(), rows.lives, [](const Life& life) { return life.poison_eaten; });
+    const std::size_t organisms = static_cast<std::size_t>(rows.genes.cols());
+    for (std::size_t objective = 0; objective < rows.objectives.size() / organisms; ++objective) {
+        std::vector<double> column;
+        for (std::size_t i = objective; i < rows.objectives.size(); i += rows.objectives.size() / organisms) {
+            column.push_back(rows.objectives[i]);
+        }
+        append_column(*population.mutable_objectives(), column, [](double number) { return number; });
+    }
     return population;
 }
 

@@ -52,7 +52,8 @@ struct PopulationRows {
     std::vector<simulation::Intention> intentions;
     // Empty unless the query asks for them, and if there are no bodies.
     std::vector<simulation::Island::Life> lives;
-    double tick_s; // unit of Life::lived_ticks
+    std::vector<double> objectives; // of a rated generation: all numbers of an organism, one organism after another
+    double tick_s;                  // unit of Life::lived_ticks
 };
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);
 v1::Population to_proto(const PopulationRows& rows);

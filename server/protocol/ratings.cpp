@@ -13,7 +13,8 @@ simulation::SetFitness command_of(const v1::SetFitness& request, std::vector<bas
                                    .generation = request.generation(),
                                    .island = request.island(),
                                    .first_organism = request.first_organism(),
-                                   .fitness = {request.fitness().begin(), request.fitness().end()}};
+                                   .fitness = {request.fitness().begin(), request.fitness().end()},
+                                   .genes = {request.genes().begin(), request.genes().end()}};
     if (command.fitness.empty()) {
         violations.push_back({"set_fitness.fitness", "at least one number", "none"});
     }

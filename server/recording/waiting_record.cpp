@@ -49,8 +49,10 @@ std::size_t bytes_of(const Record& record) {
                               std::size_t bytes = small;
                               bytes += bytes_of(ended.statistics);
                               for (const run_file::IslandOutcome& outcome : ended.outcomes) {
-                                  bytes +=
-                                      small + outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1);
+                                  bytes += small +
+                                           outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1) +
+                                           outcome.objectives.size() * sizeof(double) +
+                                           outcome.repaired.size() * sizeof(float);
                               }
                               return bytes;
                           },

@@ -121,10 +121,15 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
 
     Bred bred{*generation, wanted.island, children->begun.opening.parameters.active, {}};
     const base::Seed seed = file.identity().seed;
-    const bool shuffled = bred.parameters.shuffle_fitness;
-    std::vector<std::vector<double>> own; // per island, the fitness before shuffling
-    for (std::uint32_t island = 0; shuffled && island < islands; ++island) {
-        own.push_back(parents->ended->outcomes[island].fitness);
+    const bool differs = bred.parameters.shuffle_fitness || !parents->ended->outcomes[wanted.island].objectives.empty();
+    std::vector<std::vector<double>> own; // per island, the fitness; what decides is in the outcomes then
+    for (std::uint32_t island = 0; island < islands; ++island) {
+        run_file::IslandOutcome& outcome = parents->ended->outcomes[island];
+        evolution::GeneMatrix& genes = parents->begun.born[island].genes;
+        own.push_back(std::exchange(outcome.fitness, outcome.deciding_fitness()));
+        if (!outcome.repaired.empty()) {
+            genes = Eigen::Map<const evolution::GeneMatrix>{outcome.repaired.data(), genes.rows(), genes.cols()};
+        }
     }
     evolution::apply_shuffle(
         bred.parameters, islands,
@@ -139,14 +144,14 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
         bred.parameters.population_size, {.seed = seed, .island = bred.island, .generation = *generation}, wanted.rows,
         executor);
     const std::uint32_t first_contender = std::min(wanted.rows.first_contender, bred.record.contender_count);
-    for (std::size_t i = 0; shuffled && i < bred.record.contenders.size(); ++i) {
+    for (std::size_t i = 0; differs && i < bred.record.contenders.size(); ++i) {
         bred.record.contenders[i].own_fitness = own[bred.island][first_contender + i];
     }
     for (const evolution::Migrant& migrant : migrants) {
         if (migrant.replaces - first_contender < bred.record.contenders.size()) {
             auto& contender = bred.record.contenders[migrant.replaces - first_contender];
             contender.migrant = migrant;
-            if (shuffled) {
+            if (differs) {
                 contender.own_fitness = own[migrant.from][migrant.organism];
             }
         }

@@ -31,8 +31,10 @@ Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
     if (whole->ended) {
         bool matches = whole->ended->outcomes.size() == whole->begun.born.size();
         for (std::size_t i = 0; matches && i < whole->begun.born.size(); ++i) {
-            matches =
-                whole->ended->outcomes[i].fitness.size() == static_cast<std::size_t>(whole->begun.born[i].genes.cols());
+            const evolution::GeneMatrix& genes = whole->begun.born[i].genes;
+            const run_file::IslandOutcome& outcome = whole->ended->outcomes[i];
+            matches = outcome.fitness.size() == static_cast<std::size_t>(genes.cols()) &&
+                      (outcome.repaired.empty() || outcome.repaired.size() == static_cast<std::size_t>(genes.size()));
         }
         if (!matches) {
             // Only a simulation finds the organisms that were placed in a fork's first generation before the fork.

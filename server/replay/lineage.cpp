@@ -27,7 +27,7 @@ struct Births {
         bool initial = false;           // its organisms were not bred
         std::uint32_t placed_count = 0; // organisms that were placed; they come last
         std::vector<evolution::Parents> parents;
-        std::vector<double> fitness;
+        std::vector<double> fitness, deciding_fitness; // as in simulation::IslandOutcome
     };
     std::vector<Island> islands;
 };
@@ -44,7 +44,8 @@ Births births_of(WholeGeneration whole) {
              .initial = born.parents.empty(),
              .placed_count = static_cast<std::uint32_t>(whole.placed[i].size()),
              .parents = std::move(born.parents),
-             .fitness = whole.ended ? std::move(whole.ended->outcomes[i].fitness) : std::vector<double>{}});
+             .fitness = whole.ended ? whole.ended->outcomes[i].fitness : std::vector<double>{},
+             .deciding_fitness = whole.ended ? whole.ended->outcomes[i].deciding_fitness() : std::vector<double>{}});
     }
     return births;
 }
@@ -61,7 +62,7 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
         for (std::uint32_t organism = 0; organism < parents.islands[island].organism_count; ++organism) {
             places[island].push_back({island, organism});
         }
-        fitness.push_back(parents.islands[island].fitness);
+        fitness.push_back(parents.islands[island].deciding_fitness);
     }
     if (parents.islands.size() > 1 && evolution::migration_due(parents.generation, children.parameters)) {
         if (file.other_model()) {

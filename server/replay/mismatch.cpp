@@ -188,14 +188,25 @@ Found compare_island(const std::string& of_island, const std::vector<std::uint32
     return compare_organisms<std::uint32_t>("the founder", of_island, stored, simulated);
 }
 
-Found compare_island(const std::string& of_island, const std::vector<double>& stored,
-                     const std::vector<double>& simulated) {
-    return compare_organisms<double>("the fitness from clients", of_island, stored, simulated);
+Found compare_island(const std::string& of_island, const simulation::Rating& stored,
+                     const simulation::Rating& simulated) {
+    if (auto mismatch =
+            compare_organisms<double>("the fitness from clients", of_island, stored.fitness, simulated.fitness)) {
+        return mismatch;
+    }
+    return compare_organisms<float>("the repaired gene", of_island, stored.genes, simulated.genes);
 }
 
 Found compare_island(const std::string& of_island, const run_file::IslandOutcome& stored,
                      const run_file::IslandOutcome& simulated) {
     if (auto mismatch = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness)) {
+        return mismatch;
+    }
+    if (auto mismatch =
+            compare_organisms<double>("the objective", of_island, stored.objectives, simulated.objectives)) {
+        return mismatch;
+    }
+    if (auto mismatch = compare_organisms<float>("the repaired gene", of_island, stored.repaired, simulated.repaired)) {
         return mismatch;
     }
     if (auto mismatch =
@@ -384,7 +395,7 @@ Found compare(const simulation::WorldState& stored, const simulation::WorldState
     if (auto mismatch = compare_islands(stored.ended, simulated.ended)) {
         return mismatch;
     }
-    return compare_islands(stored.given_fitness, simulated.given_fitness);
+    return compare_islands(stored.ratings, simulated.ratings);
 }
 
 Found compare(const base::StateHash& stored, const base::StateHash& simulated) {

@@ -38,7 +38,7 @@ std::size_t bytes_of(const simulation::RemoveEntities& command) {
     return (command.food.size() + command.poison.size() + command.organisms.size()) * sizeof(std::uint32_t);
 }
 std::size_t bytes_of(const simulation::SetFitness& command) {
-    return command.fitness.size() * sizeof(double);
+    return command.fitness.size() * sizeof(double) + command.genes.size() * sizeof(float);
 }
 
 Refusal impossible_change(const std::string& path, const WorldChange& change) {

@@ -66,7 +66,9 @@ struct EndedIsland {
 /// placed  WholeGeneration::placed of the organism's island.
 /// ended   results of the organism's island; nullopt before the end of the generation.
 void write_organism(Table& table, const evolution::NextGeneration& born, std::span<const std::uint32_t> placed,
-                    std::size_t organism, double tick_s, const std::optional<EndedIsland>& ended) {
+                    std::size_t organism, const parameters::Parameters& parameters,
+                    const std::optional<EndedIsland>& ended) {
+    const double tick_s = parameters.tick_s;
     const std::size_t bred = static_cast<std::size_t>(born.genes.cols()) - placed.size();
     if (organism >= born.parents.size()) {
         table.nothing().nothing();
@@ -79,13 +81,20 @@ void write_organism(Table& table, const evolution::NextGeneration& born, std::sp
     }
     if (ended) {
         const run_file::IslandOutcome& outcome = ended->outcome;
+        const std::size_t objectives = outcome.objectives.size() / outcome.fitness.size();
         const bool alive = outcome.cause[organism] == simulation::CauseOfDeath::Alive;
         table.number(outcome.fitness[organism])
             .number(alive ? ended->statistics.simulated_s - (organism < bred ? 0 : placed[organism - bred] * tick_s)
                           : outcome.lived_ticks[organism] * tick_s)
             .text(run_file::name_of(outcome.cause[organism]));
+        for (std::size_t objective = 1; objective < objectives; ++objective) {
+            table.number(outcome.objectives[organism * objectives + objective]);
+        }
     } else {
         table.nothing().nothing().nothing();
+        for (std::uint32_t objective = 1; objective < parameters.objectives; ++objective) {
+            table.nothing();
+        }
     }
     table.end_row();
 }
@@ -205,6 +214,9 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
     const std::vector<std::string> gene_names = gene_names_of(run.file.identity().parameters);
     columns.insert(columns.end(), gene_names.begin(), gene_names.end());
     columns.insert(columns.end(), {"fitness", "lived_s", "cause"});
+    for (std::uint32_t objective = 2; objective <= run.file.identity().parameters.objectives; ++objective) {
+        columns.push_back("objective" + std::to_string(objective));
+    }
     Table table{out, format, std::move(columns)};
     GenerationReader reader{run.file, run.executor, run.stop};
     return for_each_generation(run, out, [&](std::uint64_t generation) -> Result<void> {
@@ -225,7 +237,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
             for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()) && table.can_write();
                  ++organism) {
                 table.number(generation).number(i).number(organism);
-                write_organism(table, born, placed[i], organism, begun.opening.parameters.active.tick_s, island);
+                write_organism(table, born, placed[i], organism, begun.opening.parameters.active, island);
             }
         }
         return {};

@@ -61,7 +61,7 @@ constexpr const char* from_generation_to = "generation >= ? AND generation < ? O
 } // namespace
 
 struct Generations::Writers {
-    Writers(Database& database, bool with_more_genes)
+    Writers(RunDatabase& file, Database& database, bool with_more_genes)
         : generation{database}
         , population{database}
         , founders{database}
@@ -70,6 +70,9 @@ struct Generations::Writers {
         , statistics{database} {
         if (with_more_genes) {
             more_genes.emplace(database);
+        }
+        if (has_ratings(file)) {
+            rating.emplace(database);
         }
     }
 
@@ -80,6 +83,7 @@ struct Generations::Writers {
     TableWriter<OutcomeTable> outcome;
     TableWriter<StatisticsTable> statistics;
     std::optional<TableWriter<MoreGenesTable>> more_genes; // if the file has this table
+    std::optional<TableWriter<RatingTable>> rating;        // if the file has this table
 };
 
 Generations::Generations(RunDatabase& database, const RunIdentity& identity, ParameterSets& parameter_sets,
@@ -90,7 +94,7 @@ Generations::~Generations() = default;
 
 Generations::Writers& Generations::writers() {
     if (!writers_) {
-        writers_ = std::make_unique<Writers>(database_.database, has_more_genes(identity_.parameters));
+        writers_ = std::make_unique<Writers>(database_, database_.database, has_more_genes(identity_.parameters));
     }
     return *writers_;
 }
@@ -246,6 +250,27 @@ Result<std::optional<GenerationBegun>> Generations::beginning_of(std::uint64_t g
     return std::optional{std::move(begun)};
 }
 
+bool Generations::add_ratings(GenerationEnded& ended) {
+    if (!has_ratings(database_)) {
+        return true;
+    }
+    TableReader<RatingTable> rows{database_.database, of_generation, value_of(ended.generation)};
+    RatingTable::Row row;
+    while (rows.next(row)) {
+        if (!rows.sound() || row.island >= ended.outcomes.size()) {
+            return false;
+        }
+        simulation::IslandOutcome& outcome = ended.outcomes[row.island];
+        const std::size_t organisms = outcome.fitness.size();
+        if (organisms == 0 || row.objectives.size() % organisms != 0 || row.repaired.size() % organisms != 0) {
+            return false;
+        }
+        outcome.objectives = std::move(row.objectives);
+        outcome.repaired = std::move(row.repaired);
+    }
+    return true;
+}
+
 Result<std::optional<GenerationEnded>> Generations::outcome_of(std::uint64_t generation) {
     GenerationEnded ended{.generation = generation, .outcomes = {}, .statistics = {}};
     const auto bad = [&] { return database_.damaged("the outcome of generation " + std::to_string(generation)); };
@@ -261,6 +286,9 @@ Result<std::optional<GenerationEnded>> Generations::outcome_of(std::uint64_t gen
     }
     if (database_.failed()) {
         return database_.failure();
+    }
+    if (!add_ratings(ended)) {
+        return bad();
     }
     if (ended.outcomes.empty() && !retention_.is_retained(generation)) {
         return std::optional<GenerationEnded>{};
@@ -420,7 +448,10 @@ void Generations::write(const GenerationBegun& begun) {
     if (before <= identity_.first_generation || (before - identity_.first_generation) % retention_.keep_every() == 0) {
         return;
     }
-    for (const char* table : {"population", "founders", "outcome", "checkpoint"}) {
+    for (const char* table : {"population", "founders", "outcome", "checkpoint", RatingTable::name}) {
+        if (table == RatingTable::name && !writers().rating) {
+            continue;
+        }
         database_.run("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before));
     }
 }
@@ -428,6 +459,10 @@ void Generations::write(const GenerationBegun& begun) {
 void Generations::write(const GenerationEnded& ended) {
     for (std::size_t island = 0; island < ended.outcomes.size(); ++island) {
         writers().outcome.write(OutcomeTable::View{ended.generation, island, ended.outcomes[island]});
+        const simulation::IslandOutcome& outcome = ended.outcomes[island];
+        if (!outcome.objectives.empty() || !outcome.repaired.empty()) {
+            writers().rating->write(RatingTable::Row{ended.generation, island, outcome.objectives, outcome.repaired});
+        }
     }
     for (const simulation::GenerationStatistics& statistics : ended.statistics) {
         writers().statistics.write(statistics);

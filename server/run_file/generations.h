@@ -63,6 +63,8 @@ class Generations {
     base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
                                     simulation::History& history);
     /// The numbers of the genes beyond those of the body in a generation, one row per island.
+    /// Adds what the table `rating` contains; false: the file is damaged.
+    bool add_ratings(GenerationEnded& ended);
     base::Result<std::vector<MoreGenesTable::Row>> more_genes_of(std::uint64_t generation, std::size_t island_count);
     void write_more_genes(std::uint64_t generation, std::uint64_t island,
                           const std::vector<simulation::GeneStatistics>& statistics,

@@ -187,6 +187,25 @@ struct OutcomeTable {
     }
 };
 
+/// What clients have given beside the fitness; rows only of islands with several objectives or repaired chromosomes. A
+/// file of a world that computes its fitness lacks this table.
+struct RatingTable {
+    static constexpr const char* name = "rating";
+    static constexpr std::size_t key_columns = 2;
+    struct Row {
+        std::uint64_t generation = 0, island = 0;
+        std::vector<double> objectives; // as in IslandOutcome
+        std::vector<float> repaired;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("objectives", Blob{row.objectives});
+        column("repaired", Blob{row.repaired});
+    }
+};
+
 struct StatisticsTable {
     static constexpr const char* name = "statistics";
     static constexpr std::size_t key_columns = 2;

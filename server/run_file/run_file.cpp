@@ -68,7 +68,7 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
     }
     file->identity_ = {identity, options.keep_every};
     file->begin();
-    create_schema(file->database_, has_more_genes(identity.parameters));
+    create_schema(file->database_, identity.parameters);
     write_identity(file->database_, file->identity_);
     return file;
 }

@@ -43,14 +43,14 @@ void create_all_tables(Database& database) {
 }
 
 /// Files that were created in a format before 4 may lack the first of these tables. Files of chromosomes with body
-/// genes alone lack the second: check_more_genes().
-constexpr std::string_view optional_tables[] = {FirstPopulationTable::name, MoreGenesTable::name};
+/// genes alone lack the second: check_more_genes(). Files of worlds that compute their fitness lack the third.
+constexpr std::string_view optional_tables[] = {FirstPopulationTable::name, MoreGenesTable::name, RatingTable::name};
 
 const Schema& expected_schema() {
     static const Schema expected = [] {
         Database database{":memory:", Database::Mode::Write};
         create_all_tables(database);
-        create_tables<MoreGenesTable>(database);
+        create_tables<MoreGenesTable, RatingTable>(database);
         Schema schema;
         for (Statement rows{database, all_of_schema}; rows.row();) {
             schema.insert(read_schema_row(rows));
@@ -97,12 +97,19 @@ bool has_more_genes(const parameters::Parameters& parameters) {
     return evolution::gene_count(parameters) > evolution::body_gene_count;
 }
 
-void create_schema(RunDatabase& database, bool more_genes) {
+bool has_ratings(RunDatabase& database) {
+    return database.number("SELECT count(*) FROM sqlite_schema WHERE name = 'rating'") > 0;
+}
+
+void create_schema(RunDatabase& database, const parameters::Parameters& parameters) {
     database.run("PRAGMA application_id = " + std::to_string(application_id));
     database.run("PRAGMA user_version = " + std::to_string(format_version));
     create_all_tables(database.database);
-    if (more_genes) {
+    if (has_more_genes(parameters)) {
         create_tables<MoreGenesTable>(database.database);
+    }
+    if (parameters.fitness == parameters::FitnessFunction::External) {
+        create_tables<RatingTable>(database.database);
     }
 }
 

@@ -14,10 +14,11 @@ constexpr std::int64_t format_version = 5;
 /// Returns whether the chromosomes have genes beyond those of the body. If so, the file has the table of their numbers.
 bool has_more_genes(const parameters::Parameters& parameters);
 
-/// Marks a new database as a run file and creates its tables.
-///
-/// more_genes  has_more_genes() of the run's parameters.
-void create_schema(RunDatabase& database, bool more_genes);
+/// Whether the file has the table of ratings. Files of worlds that compute their fitness do not.
+bool has_ratings(RunDatabase& database);
+
+/// Marks a new database as the run file of a run with these parameters, and creates its tables.
+void create_schema(RunDatabase& database, const parameters::Parameters& parameters);
 
 /// Refuses the database unless it is a run file of this format, contains the tables of this format, and contains no
 /// other table or index and no trigger or view. Reads only SQLite's own tables, because a view or trigger in an

@@ -127,13 +127,18 @@ struct EntityIds {
 /// The largest absolute value of a fitness from a client. The sum of the squares of all fitness values is finite.
 constexpr double given_fitness_max = 1e100;
 
+/// The largest value of the parameter `objectives`.
+constexpr std::uint32_t objectives_max = 16;
+
 /// Sets the fitness of organisms, if the parameter `fitness` is external and the generation has ended (rating.h).
 struct SetFitness {
     std::string world;
     std::uint64_t generation;
     std::uint32_t island = 0;
     std::uint32_t first_organism = 0; // id of the organism to which the first number belongs; the others follow
-    std::vector<double> fitness;      // at least one; absolute values at most given_fitness_max
+    // At least one; absolute values at most given_fitness_max; `objectives` numbers for each organism.
+    std::vector<double> fitness;
+    std::vector<float> genes = {}; // the repaired chromosomes of the rated organisms; empty: none was repaired
 };
 
 struct ForkWorld {

@@ -38,10 +38,18 @@ struct BredIslands {
 
 /// The outcome of a generation on one island. Every vector is indexed by organism id.
 struct IslandOutcome {
-    std::vector<double> fitness;
+    std::vector<double> fitness;            // the first objective
     std::vector<std::uint32_t> lived_ticks; // ticks until death; 0 for an organism that lived to the end
     std::vector<CauseOfDeath> cause;
+    // Several objectives: all numbers of each organism, one organism after another; otherwise empty.
+    std::vector<double> objectives = {};
+    // The chromosomes that clients have repaired, one of each organism after another; empty: none was repaired.
+    std::vector<float> repaired = {};
     friend bool operator==(const IslandOutcome&, const IslandOutcome&) = default;
+
+    /// The fitness that decides migration, survival and breeding: with several objectives the standing
+    /// (evolution/objectives.h).
+    std::vector<double> deciding_fitness() const;
 };
 
 /// What is known about every island at any time.
@@ -88,13 +96,13 @@ class Islands {
                              std::vector<DiedOut>& died_out) = 0;
     /// Ends a generation after its last tick. Returns the statistics of every island, without the moment of the end.
     ///
-    /// given  the fitness from clients, per island, by id; empty: the islands compute the fitness.
+    /// given  what clients have given, per island; empty: the islands compute the fitness.
     virtual std::vector<GenerationStatistics> end_generation(const parameters::Parameters& parameters,
-                                                             std::uint32_t tick,
-                                                             std::span<const std::vector<double>> given,
+                                                             std::uint32_t tick, std::span<const Rating> given,
                                                              base::Executor& executor) = 0;
-    /// Breeds the next generation and begins it. If shuffle_fitness is on, the shuffled fitness decides migration,
-    /// survival and breeding, and nothing else.
+    /// Breeds the next generation from the chromosomes of the last one, or from repaired ones, and begins it. With
+    /// several objectives, the standing takes the place of the fitness; migrants keep that of their island. If
+    /// shuffle_fitness is on, the shuffled fitness decides migration, survival and breeding, and nothing else.
     ///
     /// generation  the generation that has ended.
     /// routes      the migrants of this epoch; empty if there are none.

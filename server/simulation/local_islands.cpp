@@ -2,11 +2,16 @@
 
 #include "server/base/assert.h"
 #include "server/evolution/fitness_shuffle.h"
+#include "server/evolution/objectives.h"
 
 #include <numeric>
 #include <utility>
 
 namespace evod::simulation {
+
+std::vector<double> IslandOutcome::deciding_fitness() const {
+    return objectives.empty() ? fitness : evolution::standing({objectives, objectives.size() / fitness.size()});
+}
 
 std::unique_ptr<Islands> make_islands(base::Seed seed, std::uint32_t island_count, IslandsMaker* maker) {
     if (maker != nullptr && maker->divides(island_count)) {
@@ -46,6 +51,8 @@ void LocalIslands::begin_generation(const parameters::Parameters& parameters, st
     const bool is_drawn = bred.islands.empty();
     EVOD_ASSERT(is_drawn || bred.islands.size() == islands_.size());
     fitness_.clear();
+    objectives_.clear();
+    repaired_.clear();
     bred.islands.resize(islands_.size());
     for_each_island(executor, [&](std::size_t i) {
         if (is_drawn) {
@@ -75,8 +82,9 @@ void LocalIslands::restore(const parameters::Parameters& begun_with, const World
     for (std::size_t i = 0; i < founders_.size(); ++i) {
         founders_[i].resize(islands_[i].life_records().cause.size(), no_founder);
     }
-    fitness_ = state.given_fitness;
-    if (fitness_.empty() && !state.ended.empty()) {
+    if (!state.ratings.empty()) {
+        use(state.ratings, state.parameters.active);
+    } else if (!state.ended.empty()) {
         find_fitness(state.parameters.active, tick, executor);
     }
     summarise(tick == 0);
@@ -118,14 +126,38 @@ void LocalIslands::find_fitness(const parameters::Parameters& parameters, std::u
     }
 }
 
+void LocalIslands::use(std::span<const Rating> given, const parameters::Parameters& parameters) {
+    const std::size_t count = parameters.objectives;
+    fitness_.clear();
+    objectives_.assign(given.size(), {});
+    repaired_.assign(given.size(), {});
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        std::vector<double>& fitness = fitness_.emplace_back();
+        for (std::size_t first = 0; first < given[i].fitness.size(); first += count) {
+            fitness.push_back(given[i].fitness[first]);
+        }
+        if (count > 1) {
+            objectives_[i] = given[i].fitness;
+        }
+        if (!given[i].genes.empty()) {
+            const Eigen::Index rows = islands_[i].born().genes.rows();
+            repaired_[i] =
+                Eigen::Map<const evolution::GeneMatrix>{given[i].genes.data(), rows, std::ssize(given[i].genes) / rows};
+        }
+    }
+}
+
+const evolution::GeneMatrix& LocalIslands::breeding_genes(std::size_t i) const {
+    return repaired_.empty() || repaired_[i].size() == 0 ? islands_[i].born().genes : repaired_[i];
+}
+
 std::vector<GenerationStatistics> LocalIslands::end_generation(const parameters::Parameters& parameters,
-                                                               std::uint32_t tick,
-                                                               std::span<const std::vector<double>> given,
+                                                               std::uint32_t tick, std::span<const Rating> given,
                                                                base::Executor& executor) {
     if (given.empty()) {
         find_fitness(parameters, tick, executor);
     } else {
-        fitness_.assign(given.begin(), given.end());
+        use(given, parameters);
     }
     std::vector<GenerationStatistics> statistics;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
@@ -141,6 +173,9 @@ void LocalIslands::breed_next_generation(const parameters::Parameters& parameter
         return {.seed = seed_, .island = islands_[i].index(), .generation = generation};
     };
     for (std::size_t i = 0; i < islands_.size(); ++i) {
+        if (!objectives_.empty() && !objectives_[i].empty()) {
+            fitness_[i] = evolution::standing({objectives_[i], parameters.objectives});
+        }
         if (parameters.shuffle_fitness) {
             evolution::shuffle_fitness(fitness_[i], key_of(i), executor);
         }
@@ -153,7 +188,7 @@ void LocalIslands::breed_next_generation(const parameters::Parameters& parameter
     BredIslands bred{.islands = std::vector<evolution::NextGeneration>(islands_.size()),
                      .founders = std::move(founders_)};
     for_each_island(executor, [&](std::size_t i) {
-        const evolution::GeneMatrix& born = islands_[i].born().genes;
+        const evolution::GeneMatrix& born = breeding_genes(i);
         const evolution::GeneMatrix& genes = routes.empty() ? born : with_migrants[i];
         evolution::NextGeneration& next = bred.islands[i];
         next =
@@ -176,8 +211,8 @@ std::vector<evolution::GeneMatrix> LocalIslands::migrated(const parameters::Para
                                                           std::span<const evolution::MigrationRoute> routes,
                                                           const std::function<void(std::vector<Migrants>&)>& carry) {
     std::vector<evolution::GeneMatrix> genes;
-    for (const Island& island : islands_) {
-        genes.push_back(island.born().genes);
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        genes.push_back(breeding_genes(i));
     }
     std::vector<evolution::Ranking> rankings(fitness_.begin(), fitness_.end());
     std::vector<Migrants> migrants(routes.size());
@@ -270,7 +305,12 @@ std::vector<IslandOutcome> LocalIslands::outcomes() const {
     std::vector<IslandOutcome> outcomes;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         const LifeRecords& life_records = islands_[i].life_records();
-        outcomes.push_back({fitness_[i], life_records.lived_ticks, life_records.cause});
+        outcomes.push_back(
+            {.fitness = fitness_[i], .lived_ticks = life_records.lived_ticks, .cause = life_records.cause});
+        if (!objectives_.empty()) {
+            outcomes.back().objectives = objectives_[i];
+            outcomes.back().repaired.assign(repaired_[i].data(), repaired_[i].data() + repaired_[i].size());
+        }
     }
     return outcomes;
 }

@@ -31,8 +31,7 @@ class LocalIslands final : public Islands {
     Advanced advance(const parameters::Parameters& parameters, GenerationTicks ticks, base::Executor& executor,
                      std::vector<DiedOut>& died_out) override;
     std::vector<GenerationStatistics> end_generation(const parameters::Parameters& parameters, std::uint32_t tick,
-                                                     std::span<const std::vector<double>> given,
-                                                     base::Executor& executor) override;
+                                                     std::span<const Rating> given, base::Executor& executor) override;
     void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
                                std::span<const evolution::MigrationRoute> routes, base::Executor& executor) override {
         breed_next_generation(parameters, generation, routes, executor, [](std::vector<Migrants>&) {});
@@ -69,6 +68,9 @@ class LocalIslands final : public Islands {
     /// Calls body(i) for every element i of islands_, on the threads of the executor.
     template <class Body>
     void for_each_island(base::Executor& executor, Body&& body) const;
+    void use(std::span<const Rating> given, const parameters::Parameters& parameters);
+    /// The chromosomes from which element i of islands_ breeds.
+    const evolution::GeneMatrix& breeding_genes(std::size_t i) const;
     void find_fitness(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
     /// Returns the chromosomes of every island after migrants have replaced some, and changes fitness_ and founders_ in
     /// the same way.
@@ -82,7 +84,9 @@ class LocalIslands final : public Islands {
     std::vector<Island> islands_;
     std::vector<IslandSummary> summaries_;
     Founders founders_;
-    std::vector<std::vector<double>> fitness_; // of the ended generation, per island, by id
+    // Of the ended generation, as in IslandOutcome, per island.
+    std::vector<std::vector<double>> fitness_, objectives_;
+    std::vector<evolution::GeneMatrix> repaired_;
     // Per island: whether its last organism died in this tick. Kept between ticks to reuse the memory.
     std::vector<std::uint8_t> died_out_;
 };

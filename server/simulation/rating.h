@@ -1,10 +1,12 @@
 // Rating: the fitness of organisms from clients, for worlds whose parameter `fitness` is external.
 //
-// After the last tick of a generation, the world awaits the fitness of every organism. A client sends the numbers of an
-// island in one or several commands, in order of id; it may begin again with organism 0 while numbers are missing. When
-// all islands are rated, the generation is over.
+// After the last tick of a generation, the world awaits the fitness of every organism: one number, or as many as the
+// parameter `objectives` says. With it, clients may send repaired chromosomes, which breed in place of those that the
+// organisms were born with. A client sends the numbers of an island in one or several commands, in order of id; it may
+// begin again with organism 0 while numbers are missing. When all islands are rated, the generation is over.
 //
-// Determinism  the numbers come from the commands alone. They are part of the state hash until the next generation.
+// Determinism  numbers and chromosomes come from the commands alone. They are part of the state hash until the next
+//              generation.
 #pragma once
 
 #include "server/base/result.h"
@@ -20,12 +22,10 @@ namespace evod::simulation {
 /// Checks whether a world can get this fitness now. A refusal names the wrong field: "set_fitness.first_organism".
 base::Result<void> check(const World& world, const SetFitness& command);
 
-/// Returns the part of a world's state hash that covers the fitness from clients.
-///
-/// fitness  per island, by id.
-base::StateHash hash_of_given(std::span<const std::vector<double>> fitness);
+/// Returns the part of a world's state hash that covers what clients have given, per island.
+base::StateHash hash_of(std::span<const Rating> ratings);
 
-/// Returns whether a state whose islands have been checked has possible fitness from clients.
+/// Returns whether a state whose islands have been checked has possible ratings.
 ///
 /// awaited  whether the state is after the last tick of a generation whose fitness comes from clients.
 bool can_be_given(const WorldState& state, bool awaited);

@@ -116,11 +116,16 @@ std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
     return bytes;
 }
 
-/// The size in bytes of the fitness from clients, and of its counts.
-std::size_t bytes_of(std::span<const std::uint32_t> given_counts) {
-    std::size_t bytes = given_counts.size_bytes();
-    for (const std::uint32_t count : given_counts) {
-        bytes += std::size_t{count} * sizeof(double);
+/// The sizes of the Rating of an island.
+struct RatingCounts {
+    std::uint32_t fitness = 0, genes = 0;
+};
+
+/// The size in bytes of the ratings, and of their counts.
+std::size_t bytes_of(std::span<const RatingCounts> ratings) {
+    std::size_t bytes = ratings.size_bytes();
+    for (const RatingCounts& counts : ratings) {
+        bytes += counts.fitness * sizeof(double) + counts.genes * sizeof(float);
     }
     return bytes;
 }
@@ -153,11 +158,11 @@ std::uint32_t gene_count_of(const WorldState& state) {
 /// What determines the sizes of the parts of a state.
 struct Layout {
     bool over = false;
-    std::vector<IslandShape> shapes;         // with the placed entities
-    std::vector<PlacedCounts> placed;        // empty if nothing was placed
-    std::vector<std::uint32_t> given_counts; // of the fitness from clients
+    std::vector<IslandShape> shapes;  // with the placed entities
+    std::vector<PlacedCounts> placed; // empty if nothing was placed
+    std::vector<RatingCounts> ratings;
 
-    std::size_t bytes() const { return bytes_of(shapes, over) + bytes_of(placed, shapes) + bytes_of(given_counts); }
+    std::size_t bytes() const { return bytes_of(shapes, over) + bytes_of(placed, shapes) + bytes_of(ratings); }
 };
 
 Layout layout_of(const WorldState& state) {
@@ -179,8 +184,9 @@ Layout layout_of(const WorldState& state) {
     if (std::ranges::none_of(layout.placed, has_placed)) {
         layout.placed.clear();
     }
-    for (const std::vector<double>& given : state.given_fitness) {
-        layout.given_counts.push_back(static_cast<std::uint32_t>(given.size()));
+    for (const Rating& rating : state.ratings) {
+        layout.ratings.push_back({.fitness = static_cast<std::uint32_t>(rating.fitness.size()),
+                                  .genes = static_cast<std::uint32_t>(rating.genes.size())});
     }
     return layout;
 }
@@ -207,7 +213,7 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
         }
     };
     bytes.add(static_cast<std::uint8_t>((layout.over ? over_flag : 0) | (layout.placed.empty() ? 0 : placed_flag) |
-                                        (layout.given_counts.empty() ? 0 : given_flag)));
+                                        (layout.ratings.empty() ? 0 : given_flag)));
     bytes.add(std::span{layout.placed});
     for (const IslandState& island : state.islands) {
         for (const IslandState::Placed& organism : island.placed) {
@@ -215,9 +221,10 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
             bytes.add(organism.tick);
         }
     }
-    write_column(layout.given_counts, std::identity{});
-    for (const std::vector<double>& given : state.given_fitness) {
-        write_column(given, std::identity{});
+    bytes.add(std::span{layout.ratings});
+    for (const Rating& rating : state.ratings) {
+        write_column(rating.fitness, std::identity{});
+        write_column(rating.genes, std::identity{});
     }
     for (const IslandState& island : state.islands) {
         bytes.add(island.counts);
@@ -238,9 +245,9 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
 Result<void> check_state_size(std::size_t bytes, std::span<const IslandShape> shapes) {
     const PlacedCounts most{placed_max, placed_max, placed_max};
     const std::vector<PlacedCounts> most_placed(shapes.size(), most);
-    std::vector<std::uint32_t> most_given;
+    std::vector<RatingCounts> most_given;
     for (const IslandShape& shape : with_placed(shapes, most_placed)) {
-        most_given.push_back(shape.organisms);
+        most_given.push_back({shape.organisms * objectives_max, shape.organisms * shape.genes});
     }
     if (bytes < bytes_of(shapes, false) || bytes > bytes_of(with_placed(shapes, most_placed), true) +
                                                        bytes_of(most_placed, shapes) + bytes_of(most_given)) {
@@ -268,23 +275,24 @@ Result<void> read_state(std::string_view bytes, std::span<const IslandShape> sha
     }
     const std::vector<IslandShape> whole = with_placed(shapes, placed);
     const bool has_given = (static_cast<std::uint8_t>(bytes.front()) & given_flag) != 0;
-    std::vector<std::uint32_t> given_counts(has_given ? shapes.size() : 0);
+    std::vector<RatingCounts> ratings(has_given ? shapes.size() : 0);
     const std::size_t placed_bytes = bytes_of(placed, shapes);
-    if (bytes.size() < 1 + placed_bytes + given_counts.size() * sizeof(std::uint32_t)) {
+    if (bytes.size() < 1 + placed_bytes + ratings.size() * sizeof(RatingCounts)) {
         return refusal("its size differs from that of a state of this world");
     }
     base::Unpacker counts{bytes.substr(1 + placed_bytes)};
-    for (std::size_t i = 0; i < given_counts.size(); ++i) {
-        counts.read(given_counts[i]);
-        if (given_counts[i] > whole[i].organisms) {
+    for (std::size_t i = 0; i < ratings.size(); ++i) {
+        counts.read(ratings[i]);
+        const std::size_t organisms = whole[i].organisms;
+        if (ratings[i].fitness > organisms * objectives_max || ratings[i].genes > organisms * whole[i].genes) {
             return refusal("it has fitness for more organisms than its world has");
         }
     }
-    if (bytes.size() != bytes_of(whole, over) + placed_bytes + bytes_of(given_counts)) {
+    if (bytes.size() != bytes_of(whole, over) + placed_bytes + bytes_of(ratings)) {
         return refusal("its size differs from that of a state of this world");
     }
     state.islands.assign(shapes.size(), {});
-    state.given_fitness.assign(given_counts.size(), {});
+    state.ratings.assign(ratings.size(), {});
     state.ended.assign(over ? shapes.size() : 0, {});
     for (std::size_t i = 0; i < placed.size(); ++i) {
         state.islands[i].placed_food = placed[i].food;
@@ -296,10 +304,12 @@ Result<void> read_state(std::string_view bytes, std::span<const IslandShape> sha
             columns.read(organism.tick);
         }
     }
-    columns.read(std::span{given_counts});
-    for (std::size_t i = 0; i < given_counts.size(); ++i) {
-        state.given_fitness[i].resize(given_counts[i]);
-        columns.read(std::span{state.given_fitness[i]});
+    columns.read(std::span{ratings});
+    for (std::size_t i = 0; i < ratings.size(); ++i) {
+        state.ratings[i].fitness.resize(ratings[i].fitness);
+        columns.read(std::span{state.ratings[i].fitness});
+        state.ratings[i].genes.resize(ratings[i].genes);
+        columns.read(std::span{state.ratings[i].genes});
     }
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         IslandState& island = state.islands[i];

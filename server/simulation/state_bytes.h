@@ -15,7 +15,7 @@
 
 namespace evod::simulation {
 
-/// Writes state.islands, state.given_fitness and state.ended.
+/// Writes state.islands, state.ratings and state.ended.
 ///
 /// write  called with one piece after another.
 void write_state(const WorldState& state, const std::function<void(std::string_view)>& write);

@@ -54,12 +54,12 @@ World::World(const World& original, std::unique_ptr<Islands> islands)
     , islands_{std::move(islands)}
     , opening_{original.opening_}
     , history_{original.history_}
-    , given_fitness_{original.given_fitness_}
+    , ratings_{original.ratings_}
     , progress_{original.progress_} {}
 
 void World::open() {
     opening_ = {moment_, parameters_.set(), progress_};
-    given_fitness_.clear();
+    ratings_.clear();
     update_hash();
 }
 
@@ -234,7 +234,7 @@ void World::advance(std::uint64_t tick, base::Executor& executor) {
     }
     update_hash();
     if (has_ended && p.fitness == parameters::FitnessFunction::External) {
-        given_fitness_.resize(islands_->size());
+        ratings_.resize(islands_->size());
         events_.emplace_back(FitnessAwaited{moment_.generation});
     } else if (has_ended) {
         finish_generation(executor);
@@ -257,7 +257,7 @@ bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
 void World::finish_generation(base::Executor& executor) {
     const parameters::Parameters& p = parameters_.active();
     std::vector<GenerationStatistics> statistics =
-        islands_->end_generation(p, static_cast<std::uint32_t>(moment_.generation_tick), given_fitness_, executor);
+        islands_->end_generation(p, static_cast<std::uint32_t>(moment_.generation_tick), ratings_, executor);
     for (GenerationStatistics& island : statistics) {
         island.generation = moment_.generation;
         island.end_tick = moment_.tick;
@@ -287,8 +287,8 @@ void World::update_hash() {
     for (const IslandSummary& island : islands_->summaries()) {
         hash_ += base::EntityHash{island_kind, index++}.add(island.hash.low).add(island.hash.high).finish();
     }
-    if (!given_fitness_.empty()) {
-        hash_ += hash_of_given(given_fitness_);
+    if (!ratings_.empty()) {
+        hash_ += hash_of(ratings_);
     }
 }
 

@@ -156,7 +156,7 @@ class World {
 
     bool generation_over() const { return generation_over_; }
     /// Whether the last tick of the generation has passed, but clients have not rated all islands yet.
-    bool awaits_fitness() const { return !generation_over_ && !given_fitness_.empty(); }
+    bool awaits_fitness() const { return !generation_over_ && !ratings_.empty(); }
     /// Whether the last tick of the generation has passed.
     bool is_after_last_tick() const { return generation_over_ || awaits_fitness(); }
     /// Whether clients have given the fitness of all organisms of an island.
@@ -200,7 +200,7 @@ class World {
     void become_fork();
     /// The fitness from clients, per island, by id: after the last tick of a generation the numbers given so far;
     /// otherwise empty.
-    std::span<const std::vector<double>> given_fitness() const { return given_fitness_; }
+    std::span<const Rating> ratings() const { return ratings_; }
 
     /// Returns and removes the events since the last call, oldest first.
     std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
@@ -234,7 +234,7 @@ class World {
     Opening opening_;
     History history_;
     std::vector<EventKind> events_;
-    std::vector<std::vector<double>> given_fitness_;
+    std::vector<Rating> ratings_;
     evolution::Progress progress_;
 };
 

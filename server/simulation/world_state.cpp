@@ -250,7 +250,7 @@ WorldState World::state(base::Executor& executor) const {
                      .parameters = parameters(),
                      .islands = islands_->states(executor),
                      .ended = {},
-                     .given_fitness = given_fitness_};
+                     .ratings = ratings_};
     if (generation_over_) {
         state.ended = history_.back();
     }
@@ -310,7 +310,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     }
     // If a command has removed the last living organism after this tick, the generation ends with the next tick.
     const bool removed_last =
-        alive == 0 && removed > 0 && state.ended.empty() && state.given_fitness.empty() && !ends(tick, 1);
+        alive == 0 && removed > 0 && state.ended.empty() && state.ratings.empty() && !ends(tick, 1);
     const bool after_last_tick = ends(tick, alive) && !removed_last;
     if (!can_be_given(state, after_last_tick && set.active.fitness == parameters::FitnessFunction::External)) {
         return wrong("fitness");
@@ -329,7 +329,7 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     islands_->restore(parameters_.active(), state, executor);
     moment_ = state.moment;
     parameters_.restore(state.parameters);
-    given_fitness_ = state.given_fitness;
+    ratings_ = state.ratings;
     if (!state.ended.empty()) {
         std::vector<GenerationStatistics> ended = state.ended;
         for (std::size_t i = 0; i < ended.size(); ++i) {

@@ -81,14 +81,22 @@ struct IslandState {
     friend bool operator==(const IslandState&, const IslandState&) = default;
 };
 
+/// What clients have given for the organisms of an island after the last tick of a generation, in order of id.
+struct Rating {
+    std::vector<double> fitness; // `objectives` numbers of each organism, one organism after another
+    // The repaired chromosomes of the rated organisms, one after another; empty: none was repaired.
+    std::vector<float> genes = {};
+    friend bool operator==(const Rating&, const Rating&) = default;
+};
+
 struct WorldState {
     Moment moment;
     parameters::ParameterSet parameters;
     std::vector<IslandState> islands;
     std::vector<GenerationStatistics> ended; // at the end of a generation: one per island; otherwise empty
-    // After the last tick of a generation, if its fitness comes from clients: for each island, the numbers that clients
-    // have given so far, by id. Otherwise empty.
-    std::vector<std::vector<double>> given_fitness = {};
+    // After the last tick of a generation, if its fitness comes from clients: for each island, what clients have given
+    // so far. Otherwise empty.
+    std::vector<Rating> ratings = {};
 };
 
 /// Returns whether a state of the beginning of a generation differs from `begun` only by what commands have placed and

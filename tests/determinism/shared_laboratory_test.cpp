@@ -244,7 +244,7 @@ void expect_equal_records(const World& alone, const World& shared, base::Executo
     base::InlineExecutor here;
     const WorldState state = alone.state(here), gathered = shared.state(executor);
     EXPECT_EQ(state.islands, gathered.islands);
-    EXPECT_EQ(state.given_fitness, gathered.given_fitness);
+    EXPECT_EQ(state.ratings, gathered.ratings);
     EXPECT_EQ(state.ended.size(), gathered.ended.size());
     if (alone.generation_over()) {
         EXPECT_EQ(run_file::end_of(alone).outcomes, run_file::end_of(shared).outcomes);

@@ -1,5 +1,6 @@
 #include "tests/histories/random_commands.h"
 
+#include "server/evolution/gene_layout.h"
 #include "server/parameters/schedule.h"
 #include "server/protocol/parameters.h"
 #include "tests/histories/random_worlds.h"
@@ -242,14 +243,20 @@ v1::Request RandomCommands::set_fitness(const Entry& entry) {
         ++island;
     }
     set.set_island(island);
+    const std::uint32_t objectives = world.parameters().active.objectives;
     const auto given =
-        world.given_fitness().empty() ? 0 : static_cast<std::uint32_t>(world.given_fitness()[island].size());
+        world.ratings().empty() ? 0 : static_cast<std::uint32_t>(world.ratings()[island].fitness.size() / objectives);
     const std::uint32_t count = world.organism_count(island);
     set.set_first_organism(given < count && draws_.chance(0.9) ? given : 0);
     const std::uint32_t missing = count - set.first_organism();
     const std::uint32_t sent_count = missing > 1 && draws_.chance(0.25) ? draws_.count(1, missing - 1) : missing;
-    for (std::uint32_t i = 0; i < sent_count; ++i) {
+    for (std::uint32_t i = 0; i < sent_count * objectives; ++i) {
         set.add_fitness(draws_.chance(0.1) ? 0 : draws_.number(-5, 5));
+    }
+    const evolution::GeneBounds bounds = evolution::gene_bounds(world.parameters().active);
+    const bool repairs = draws_.chance(0.2);
+    for (std::uint32_t i = 0; repairs && i < sent_count; ++i) {
+        set.mutable_genes()->Add(bounds.min.begin(), bounds.min.end());
     }
     return sent;
 }

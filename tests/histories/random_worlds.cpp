@@ -42,6 +42,7 @@ void add_kind_of_world(Assignments& assignments, Draws& draws) {
     if (kind < 3) {
         assignments.set("fitness", "external");
         assignments.set("external_bodies", draws.chance(0.6));
+        assignments.set("objectives", draws.count(1, 3));
     } else if (kind == 3) {
         assignments.set("fitness", draws.chance(0.5) ? "gene_sum" : "rastrigin");
     }

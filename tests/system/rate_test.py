@@ -61,6 +61,21 @@ class Rating(access.Access):
         self.assertEqual([(s.fitness_best, s.best_organism) for s in last], [(3000, 2), (3000, 2)])
         self.waiting_world(client)
 
+    def test_several_objectives_are_rated_by_lines(self):
+        server, client = self.begin()
+        client.call(create_world=c.CreateWorld(name="two", seed=1, parameters=plain.assignments(
+            fitness="external", external_bodies=False, objectives=2, population_size=3)))
+        client.call(run=c.Run(world="two", generations=1))
+        plain.until(lambda: client.world("two").HasField("awaited_fitness"), "the end of the generation")
+        for text, got in (("1 2\n3\n", "line 2: got 3, allowed 2 numbers, as in the first line"),
+                          ("1 2 3\n", "2 numbers for each organism"), ("1;2\n", "line 1: got 1;2")):
+            self.assertIn(got, self.evoctl("--world", "two", "rate", self.file("bad.txt", text), server=server,
+                                           status=2))
+        done = self.evoctl("--world", "two", "rate", self.file("rows.csv", "1, 2\n3,4\r\n5\t-6\n"), server=server)
+        self.assertIn("rated 3 organisms", done)
+        last = plain.until(lambda: client.call(get_statistics=c.GetStatistics(world="two")).statistics.last, "its end")
+        self.assertEqual([(s.fitness_best, s.best_organism) for s in last], [(5, 2)])
+
     def test_commands_without_network_refuse_it_at_the_start(self):
         sweep = self.file("sweep.json", json.dumps({"experiment": SETTING, "grid": {"elite_count": [0, 1]},
                                                     "generations": 2}))

@@ -45,7 +45,9 @@ from evod.experiments import compare, run, run_table, sweep
 from evod.generations import Generation, History, Life, Population, Solution
 from evod.genes import GENE_NAMES, ByGene, Genes
 from evod.lab import Lab, Replay, World
+from evod.objectives import Front, hypervolume, nondominated
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
+from evod.rating import Repaired
 from evod.results import (
     AwaitedFitness,
     Brain,
@@ -91,7 +93,7 @@ __all__ = [
            "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
     "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference",
            "EntityIds", "Error", "Evaluation",
-    "Events", "FailedPrecondition", "FileNotFound", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics",
+    "Events", "FailedPrecondition", "FileNotFound", "Front", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics",
            "Generation",
     "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics",
            "LocalLab", "Migrant", "MissingPackage",
@@ -99,11 +101,11 @@ __all__ = [
            "Organisms",
     "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population",
            "ProgramFailed",
-    "RUNNING", "Registry", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot",
-           "Snapshots",
+    "RUNNING", "Registry", "Repaired", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState",
+           "Snapshot", "Snapshots",
     "Solution", "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated",
            "Unavailable",
-    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "local",
-           "open_run",
+    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "hypervolume",
+           "local", "nondominated", "open_run",
     "run", "run_table", "sweep",
 ]  # fmt: skip

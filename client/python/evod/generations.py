@@ -12,6 +12,7 @@ from evod import plotting
 from evod.conversion import result
 from evod.errors import FailedPrecondition
 from evod.genes import ACCOUNT_PARTS, GENE_NAMES, Genes
+from evod.objectives import Front
 from evod.results import GenerationStatistics, GeneStatistics
 from evod.tables import html_table, number_text, pandas
 from evod.v1 import commands_pb2, world_pb2
@@ -69,6 +70,7 @@ class Generation:
     minimize: bool = False  #: whether less fitness is better: the numbers of a function that World.evaluate minimizes
     evaluation_count: int | None = None  #: organisms that the call of World.evaluate has rated until now; or None
     best_solution: Solution | None = None  #: the best organism that the call of World.evaluate has rated; or None
+    front: Front | None = None  #: the best organisms, if the call of World.evaluate rates several objectives; or None
 
     @property
     def end_tick(self) -> int:

@@ -157,8 +157,9 @@ class LabPlans:
         ids: EntityIds = result(response.removed)
         return ids
 
-    def rated_genes(self, world: str) -> Plan[tuple[Sequence[str] | None, bool]]:
-        """Returns the names of the genes that a fitness function gets, None for all, and whether the world has bodies.
+    def rated_genes(self, world: str) -> Plan[tuple[Sequence[str] | None, bool, int]]:
+        """Returns the names of the genes that a fitness function gets, None for all; whether the world has bodies; and
+        how many numbers rate an organism.
 
         Raises FailedPrecondition if the world computes its fitness itself.
         """
@@ -172,7 +173,8 @@ class LabPlans:
             )
         info = yield from world_info(world)
         names = _rated_names(info, parameters)
-        return (None if len(names) == len(info.gene_names) else names), bool(parameters.external_bodies)
+        visible = None if len(names) == len(info.gene_names) else names
+        return visible, bool(parameters.external_bodies), int(parameters.objectives)
 
     def hall_of_fame(
         self, world: str, k: int, first: int | None, last: int | None, island: int | None, minimize: bool
@@ -181,10 +183,15 @@ class LabPlans:
         names = _rated_names((yield from world_info(world)), (yield from self.parameters(world)))
         return (yield from solutions.hall_of_fame(world, names, k, first, last, island, minimize))
 
-    def set_fitness(self, world: str, generation: int, island: int, fitness: numpy.typing.NDArray[Any]) -> Plan[bool]:
-        """Sends the fitness of all organisms of an island; returns False if the server needs it no longer."""
+    def set_fitness(
+        self, world: str, generation: int, island: int, fitness: numpy.typing.NDArray[Any],
+        genes: numpy.typing.NDArray[Any] | None = None
+    ) -> Plan[bool]:
+        """Sends the fitness of all organisms of an island, and their repaired chromosomes; returns False if the server
+        needs them no longer."""
         limit = self.core.welcome.limits.control_frame_bytes_max if self.core.welcome else 0
-        most = max((limit or 65536) - 4096, 8) // 8  # the numbers in one request
+        bytes_each = fitness[:1].size * 8 + (0 if genes is None else genes[:1].size * 4)
+        most = max(((limit or 65536) - 4096) // bytes_each, 1)  # the organisms in one request
         for first in range(0, len(fitness), most):
             try:
                 yield from request(
@@ -193,7 +200,8 @@ class LabPlans:
                     generation=generation,
                     island=island,
                     first_organism=first,
-                    fitness=fitness[first : first + most],
+                    fitness=fitness[first : first + most].ravel(),
+                    genes=() if genes is None else genes[first : first + most].ravel(),
                 )
             except Error as error:
                 if error.reason in (c.REASON_FITNESS_NOT_AWAITED, c.REASON_GENERATION_CHANGED):

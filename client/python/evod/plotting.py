@@ -278,6 +278,14 @@ def plot_lineage(lineage: Any, ax: Any = None) -> Any:
     return ax
 
 
+def plot_front(objectives: Array, generation: int, ax: Any) -> Any:
+    """Plots the second objective of a front over the first."""
+    ax = _axes(ax)
+    ax.scatter(objectives[:, 0], objectives[:, 1], s=16)
+    ax.set(xlabel="objective 1", ylabel="objective 2", title=f"front of generation {generation}")
+    return ax
+
+
 #: generation, island and id of an organism
 _Name = tuple[int, int, int]
 

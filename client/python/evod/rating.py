@@ -12,12 +12,33 @@ from typing import Any, Callable, Mapping, Sequence
 import numpy
 import numpy.typing
 
-from evod.errors import InvalidArgument, Violation, wrong_argument
+from evod.errors import FailedPrecondition, InvalidArgument, Violation, wrong_argument
 from evod.generations import Generation, Life, Population, Solution
 from evod.genes import Genes
+from evod.objectives import front_of
 
 Array = numpy.typing.NDArray[Any]
-Fitness = Callable[[Genes, Life], numpy.typing.ArrayLike]
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Repaired:
+    """What a fitness function returns that has repaired chromosomes: they breed in place of those that it got.
+
+    The run file contains them, so the run can be repeated without the function.
+
+    Examples
+    --------
+    >>> import evod
+    >>> def rate(genes, life):
+    ...     whole = genes.round()
+    ...     return evod.Repaired(whole.sum(axis=1), whole)
+    """
+
+    fitness: numpy.typing.ArrayLike  #: as the function returns it otherwise
+    genes: numpy.typing.ArrayLike  #: in the shape of the genes that the function got, each within its bounds
+
+
+Fitness = Callable[[Genes, Life], "numpy.typing.ArrayLike | Repaired"]
 
 FITNESS_MAX = 1e100  # the largest absolute value of a fitness
 HALL_MAX = 100  # how many of the best solutions a Rater stores
@@ -30,10 +51,11 @@ class Rater:
     has_bodies whether organisms live on islands; the life of a survivor then differs from generation to generation.
     minimize   whether less is better for the function; evod gets the negative numbers.
     only_new   whether the function gets only organisms whose genes it has not rated in the generation before.
+    objectives how many numbers the function returns for an organism.
     """
 
     def __init__(self, function: Fitness, visible: Sequence[str] | None, has_bodies: bool, *, minimize: bool,
-                 only_new: bool) -> None:
+                 only_new: bool, objectives: int = 1) -> None:
         if not callable(function):
             raise wrong_argument("function", "a function of genes and life", repr(function))
         if only_new and has_bodies:
@@ -42,50 +64,69 @@ class Rater:
         self._function, self._visible, self._only_new = function, visible, only_new
         self._has_bodies = has_bodies
         self.minimize = minimize
+        self._objectives = objectives
+        self._parts: list[tuple[Genes, Array]] = []  # of the islands of this generation, for its front
         self.evaluation_count = 0
         self._hall: dict[bytes, Solution] = {}  # best first
         self._best: tuple[int, Solution] | None = None  # the best solution of the generation with this number
         # The fitness by genes of the generation before and of this one; the islands of a generation are rated in turn.
-        self._before: dict[bytes, float] = {}
-        self._now: tuple[int, dict[bytes, float]] = (0, {})
+        self._before: dict[bytes, Array] = {}
+        self._now: tuple[int, dict[bytes, Array]] = (0, {})
 
-    def rate(self, population: Population) -> Array:
-        """Calls the function with the organisms of an island, and returns the fitness that evod needs.
+    def rate(self, population: Population) -> tuple[Array, Array | None]:
+        """Calls the function with the organisms of an island. Returns the fitness that evod needs, of shape (count,) or
+        (count, objectives), and the chromosomes of all organisms if the function has repaired some.
 
         Raises InvalidArgument if the function returns a wrong shape or number, or writes into its arrays.
         """
         if population.generation != self._now[0]:
-            self._before, self._now = self._now[1], (population.generation, {})
+            self._before, self._now, self._parts = self._now[1], (population.generation, {}), []
         genes = genes_of(population, self._visible)
         keys = [row.tobytes() for row in numpy.ascontiguousarray(genes)]
         is_new = numpy.array([self._has_bodies or key not in self._before for key in keys], bool)
         life = dataclasses.replace(population.life, is_new=is_new)
-        if self._only_new:
-            fitness = numpy.array([self._before.get(key, 0.0) for key in keys])
-            if is_new.any():
-                ids = numpy.flatnonzero(is_new)
-                fitness[is_new] = self._call(Genes(genes[is_new], genes.names or ()), life.of(is_new), ids)
-            self.evaluation_count += int(is_new.sum())
+        rated = is_new if self._only_new else numpy.ones(len(keys), bool)
+        fitness = numpy.zeros((len(keys), self._objectives) if self._objectives > 1 else len(keys))
+        for row in numpy.flatnonzero(~rated):
+            fitness[row] = self._before[keys[row]]
+        repaired = None
+        if rated.any():
+            shown = Genes(genes[rated], genes.names or ())
+            fitness[rated], repaired = self._call(shown, life.of(rated), numpy.flatnonzero(rated))
+        self.evaluation_count += int(rated.sum())
+        whole = None
+        if repaired is not None:
+            genes[rated] = repaired
+            keys = [row.tobytes() for row in numpy.ascontiguousarray(genes)]
+            whole = _with_columns(population, self._visible, genes)
+        self._now[1].update(zip(keys, fitness))
+        if self._objectives > 1:
+            self._parts.append((genes, fitness))
         else:
-            fitness = self._call(genes, life, numpy.arange(len(keys)))
-            self.evaluation_count += len(fitness)
-        self._now[1].update(zip(keys, fitness.tolist()))
-        self._remember(genes, keys, fitness, life)
-        return 0.0 - fitness if self.minimize else fitness
+            self._remember(genes, keys, fitness, life)
+        return (0.0 - fitness if self.minimize else fitness), whole
 
     def completed(self, generation: Generation) -> Generation:
         """Returns an ended generation in the sign of the function, with what this Rater knows about it."""
         in_sign = generation.negated() if self.minimize else generation
         best = self._best[1] if self._best is not None and self._best[0] == generation.number else None
-        return dataclasses.replace(in_sign, evaluation_count=self.evaluation_count, best_solution=best)
+        front = None
+        if self._parts and self._now[0] == generation.number:
+            genes = Genes(numpy.concatenate([part[0] for part in self._parts]), self._parts[0][0].names or ())
+            front = front_of(generation.number, genes, numpy.concatenate([part[1] for part in self._parts]),
+                             self.minimize)
+        return dataclasses.replace(in_sign, evaluation_count=self.evaluation_count, best_solution=best, front=front)
 
     def hall_of_fame(self, k: int) -> list[Solution]:
         """Returns the k best solutions until now, best first."""
+        if self._objectives > 1:
+            raise FailedPrecondition(
+                "of several objectives, no single organism is the best: evaluation.front() returns the best ones")
         if not 1 <= k <= HALL_MAX:
             raise wrong_argument("k", f"1 to {HALL_MAX}; world.hall_of_fame(k) returns more", k)
         return list(self._hall.values())[:k]
 
-    def _call(self, genes: Genes, life: Life, organisms: Array) -> Array:
+    def _call(self, genes: Genes, life: Life, organisms: Array) -> tuple[Array, Array | None]:
         where = f"in generation {life.generation}, island {life.island}"
         for array in (genes, *vars(life).values()):
             if isinstance(array, numpy.ndarray):
@@ -96,24 +137,36 @@ class Rater:
             if "read-only" not in str(error):
                 raise
             raise wrong_argument(
-                "genes", "reading; a function that repairs genes repairs a copy, genes.copy(), and rates the copy",
-                "a write", f"the fitness function has written into its arguments {where}: evod stores the genes that "
-                "it has drawn, and repaired genes cannot be handed back") from error
-        return self._checked(result, organisms, where)
+                "genes", "reading; a function that repairs genes repairs a copy, genes.copy(), and returns "
+                "evod.Repaired(fitness, copy)", "a write",
+                f"the fitness function has written into its arguments {where}") from error
+        if not isinstance(result, Repaired):
+            return self._checked(result, organisms, where), None
+        repaired = numpy.asarray(result.genes, numpy.float32)
+        if repaired.shape != genes.shape:
+            raise wrong_argument("Repaired.genes", f"the shape of the genes, {genes.shape}",
+                                 f"the shape {repaired.shape}",
+                                 f"the fitness function has returned wrong chromosomes {where}")
+        return self._checked(result.fitness, organisms, where), repaired
 
     def _checked(self, result: Any, organisms: Array, where: str) -> Array:
         count = len(organisms)
+        shape = (count, self._objectives) if self._objectives > 1 else (count,)
         allowed = f"an array of {count} numbers, one for each organism"
+        if self._objectives > 1:
+            allowed = f"an array of the shape {shape}: {self._objectives} numbers for each organism (objectives)"
         message = f"the fitness function has returned a value that is not allowed {where}"
         try:
             fitness = numpy.asarray(result, float)
         except (TypeError, ValueError):
             raise wrong_argument("fitness", allowed, repr(result)[:200], message) from None
-        if fitness.shape != (count,):
-            if fitness.ndim == 2 and len(fitness) == count:
-                allowed += "; of several objectives, return a weighted sum"
+        if fitness.shape != shape:
+            if fitness.shape == (count, 1):
+                allowed += ": column [:, 0] of the array"
+            elif fitness.ndim == 2 and len(fitness) == count:
+                allowed += f". For {fitness.shape[1]} objectives, create the world with objectives={fitness.shape[1]}"
             raise wrong_argument("fitness", allowed, f"the shape {fitness.shape}", message)
-        wrong = numpy.flatnonzero(~(numpy.abs(fitness) <= FITNESS_MAX))
+        wrong = numpy.flatnonzero(~(numpy.abs(fitness).reshape(count, -1) <= FITNESS_MAX).all(axis=1))
         if len(wrong):
             worse = "greater" if self.minimize else "less"
             faults = [Violation(f"fitness[{i}]", f"{-FITNESS_MAX:g} to {FITNESS_MAX:g}", str(fitness[i]))
@@ -143,6 +196,14 @@ class Rater:
 
     def _is_better(self, one: Solution, other: Solution) -> bool:
         return one.fitness < other.fitness if self.minimize else one.fitness > other.fitness
+
+
+def _with_columns(population: Population, visible: Sequence[str] | None, genes: Genes) -> Array:
+    """The chromosomes of a population with other values of the visible genes."""
+    whole = numpy.array(population.genes)
+    names = population.genes.names or ()
+    whole[:, slice(None) if visible is None else [names.index(name) for name in visible]] = genes
+    return whole
 
 
 def genes_of(population: Population, visible: Sequence[str] | None) -> Genes:

@@ -47,8 +47,7 @@ class SharedIslands final : public Islands {
         return advanced;
     }
     std::vector<GenerationStatistics> end_generation(const parameters::Parameters& parameters, std::uint32_t tick,
-                                                     std::span<const std::vector<double>> given,
-                                                     base::Executor& executor) override {
+                                                     std::span<const Rating> given, base::Executor& executor) override {
         use(parameters);
         return part_.perform(order(EndGeneration{tick, !given.empty()}), executor, given);
     }

@@ -73,7 +73,13 @@ struct Fields<simulation::GenerationStatistics> {
 };
 template <>
 struct Fields<simulation::IslandOutcome> {
-    static void visit(auto& outcome, auto&& each) { each(outcome.fitness, outcome.lived_ticks, outcome.cause); }
+    static void visit(auto& outcome, auto&& each) {
+        each(outcome.fitness, outcome.objectives, outcome.repaired, outcome.lived_ticks, outcome.cause);
+    }
+};
+template <>
+struct Fields<simulation::Rating> {
+    static void visit(auto& rating, auto&& each) { each(rating.fitness, rating.genes); }
 };
 template <>
 struct Fields<simulation::BredIslands> {
@@ -131,7 +137,7 @@ struct Restore {
 struct Advance {
     GenerationTicks ticks;
 };
-/// Scattered, if is_given: the fitness from clients.
+/// Scattered, if is_given: what clients have given.
 struct EndGeneration {
     std::uint32_t tick;
     bool is_given;

@@ -148,13 +148,13 @@ bool Part::perform(const Begin& order, base::Executor& executor, BredIslands bre
 void Part::perform(const Restore& order, base::Executor& executor, const WorldState& state) {
     const auto islands = divide(state.islands);
     const auto ended = divide(state.ended);
-    const auto given = divide(state.given_fitness);
+    const auto given = divide(state.ratings);
     std::vector<std::string> parts;
     for (std::uint32_t rank = 0; is_first() && rank < exchange_.size(); ++rank) {
         WorldState part;
         part.islands = islands[rank];
         part.ended = ended[rank];
-        part.given_fitness = given[rank];
+        part.ratings = given[rank];
         parts.push_back(bytes_of(part));
     }
     WorldState own = state_of(scatter(exchange_, std::move(parts)), shapes());
@@ -180,8 +180,8 @@ ExchangedResults Part::perform(const Advance& order, base::Executor& executor) {
 }
 
 std::vector<GenerationStatistics> Part::perform(const EndGeneration& order, base::Executor& executor,
-                                                std::span<const std::vector<double>> given) {
-    std::vector<std::vector<double>> own;
+                                                std::span<const Rating> given) {
+    std::vector<Rating> own;
     if (order.is_given) {
         own = scatter(exchange_, divide(std::vector(given.begin(), given.end())));
     }

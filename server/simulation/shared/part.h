@@ -29,7 +29,7 @@ class Part {
     /// Returns the last tick that any process has performed, and what has died out.
     ExchangedResults perform(const Advance& order, base::Executor& executor);
     std::vector<GenerationStatistics> perform(const EndGeneration& order, base::Executor& executor,
-                                              std::span<const std::vector<double>> given = {});
+                                              std::span<const Rating> given = {});
     /// Returns whether memory suffices in all processes.
     bool perform(const TurnOver& order, base::Executor& executor);
     EntityIds perform(const Place& order);

@@ -51,6 +51,15 @@ inline std::vector<StageChoice> stage_choices() {
         }
     };
     add_each("population_model", &Parameters::population_model);
+    for (const SelectionMethod method : {SelectionMethod::StochasticUniversal, SelectionMethod::Tournament,
+                                         SelectionMethod::Random, SelectionMethod::Truncation}) {
+        add("population_model=nsga2,selection=" +
+                std::string{base::ChoiceNames<SelectionMethod>::names[static_cast<std::size_t>(method)]},
+            [&](Parameters& parameters) {
+                parameters.population_model = PopulationModel::Nsga2;
+                parameters.selection = method;
+            });
+    }
     for (std::size_t i = 1; i < std::size(base::ChoiceNames<FitnessScaling>::names); ++i) {
         for (const SelectionMethod method : {SelectionMethod::Roulette, SelectionMethod::StochasticUniversal}) {
             add("fitness_scaling=" + std::string{base::ChoiceNames<FitnessScaling>::names[i]} +

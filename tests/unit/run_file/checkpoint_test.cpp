@@ -64,11 +64,11 @@ TEST(CheckpointState, ContainsFitnessFromClients) {
     for (simulation::IslandState& island : state.islands) {
         island.life_records.begin_generation(3);
     }
-    state.given_fitness = {{1.5, -2, 1e100}, {7}};
+    state.ratings = {{{1.5, -2, 1e100}}, {{7}, {1, 2, 3, 4, 5, 6}}};
     simulation::WorldState again = state;
-    again.given_fitness.clear();
+    again.ratings.clear();
     ASSERT_TRUE(unpack(pack(state), shapes, again));
-    EXPECT_EQ(again.given_fitness, state.given_fitness);
+    EXPECT_EQ(again.ratings, state.ratings);
     EXPECT_EQ(again.islands, state.islands);
 }
 

@@ -49,8 +49,10 @@ class RatingTest : public testing::Test {
             advance();
         } while (!world().awaits_fitness());
     }
-    base::Result<Applied> rate(std::uint32_t island, std::vector<double> fitness, std::uint32_t first = 0) {
-        return laboratory.apply(SetFitness{"w", world().moment().generation, island, first, std::move(fitness)});
+    base::Result<Applied> rate(std::uint32_t island, std::vector<double> fitness, std::uint32_t first = 0,
+                               std::vector<float> genes = {}) {
+        return laboratory.apply(
+            SetFitness{"w", world().moment().generation, island, first, std::move(fitness), std::move(genes)});
     }
     template <class Kind>
     std::size_t count(const std::vector<Event>& events) {
@@ -97,7 +99,7 @@ TEST_F(RatingTest, NumbersMayComeInPartsAndBeginAgain) {
     EXPECT_EQ(gap.error().violations.at(0).allowed, "0 or 3");
     ASSERT_TRUE(rate(0, {10, 20, 30, 40}));
     ASSERT_TRUE(rate(0, {50}, 4));
-    EXPECT_THAT(world().given_fitness()[0], testing::ElementsAre(10, 20, 30, 40, 50));
+    EXPECT_THAT(world().ratings()[0].fitness, testing::ElementsAre(10, 20, 30, 40, 50));
 }
 
 TEST_F(RatingTest, WrongCommandsAreRefused) {
@@ -204,6 +206,66 @@ TEST_F(RatingTest, ATerminationCriterionUsesTheNumbers) {
     EXPECT_EQ(count<RunTerminated>(laboratory.take_events()), 1u);
 }
 
+TEST_F(RatingTest, SeveralObjectivesAreRankedByFrontAndCrowding) {
+    parameters::Parameters parameters = rated_world(false);
+    parameters.objectives = 2;
+    parameters.island_count = 1;
+    parameters.population_model = evolution::PopulationModel::Nsga2;
+    parameters.survivors = 0.6;
+    parameters.selection = evolution::SelectionMethod::Tournament;
+    create(parameters);
+    advance();
+    EXPECT_THAT(base::to_text(rate(0, {1, 2, 3}).error()), HasSubstr("2 numbers for each organism (objectives)"));
+    EXPECT_THAT(base::to_text(rate(0, std::vector<double>(12)).error()), HasSubstr("10 numbers, 2 for each organism"));
+    // Organisms 1 and 3 are dominated; 0, 2 and 4 are the first front.
+    ASSERT_TRUE(rate(0, {0, 9, 0, 8, 9, 0}));
+    EXPECT_THAT(base::to_text(rate(0, {0, 0}, 2).error()), HasSubstr("0 or 3"));
+    EXPECT_FALSE(world().is_rated(0));
+    ASSERT_TRUE(rate(0, {8, 0, 5, 5}, 3));
+    EXPECT_EQ(world().history().back()[0].fitness_best, 9); // the first objective
+    EXPECT_EQ(world().history().back()[0].best_organism, 2u);
+    EXPECT_THAT(world().outcomes()[0].objectives, testing::ElementsAre(0, 9, 0, 8, 9, 0, 8, 0, 5, 5));
+    World again = world().at_its_opening(executor);
+    ASSERT_TRUE(again.restore(world().state(executor), executor));
+    again.advance_tick(executor);
+    advance();
+    EXPECT_EQ(again.hash(), world().hash());
+    std::vector<std::uint32_t> survivors;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        survivors.push_back(world().islands().island(0).born().parents[i].first);
+    }
+    EXPECT_THAT(survivors, testing::UnorderedElementsAre(0, 2, 4));
+}
+
+TEST_F(RatingTest, RepairedChromosomesBreed) {
+    parameters::Parameters parameters = rated_world(true);
+    parameters.elite_count = 1;
+    create(parameters);
+    advance_to_rating();
+    const std::vector<float> repaired{100, 101, 102, 103, 104, 105};
+    EXPECT_THAT(base::to_text(rate(1, {1}, 0, {1, 2}).error()), HasSubstr("6 numbers, 6 for each rated organism"));
+    EXPECT_THAT(base::to_text(rate(1, {1}, 0, {100, 101, 900, 103, 104, 105}).error()),
+                HasSubstr("set_fitness.organism[0].body_size"));
+    const base::StateHash before = world().hash();
+    ASSERT_TRUE(rate(1, {5, 4}));
+    ASSERT_TRUE(rate(1, {9}, 2, repaired));
+    EXPECT_NE(world().hash(), before);
+    World again = world().at_its_opening(executor);
+    ASSERT_TRUE(again.restore(world().state(executor), executor));
+    EXPECT_EQ(again.hash(), world().hash());
+    ASSERT_TRUE(rate(1, {3, 2}, 3));
+    ASSERT_TRUE(rate(0, {0, 0, 0, 0, 1}));
+    const auto genes_of = [&](std::uint32_t organism) {
+        const auto column = evolution::column(world().islands().island(1).born().genes, organism);
+        return std::vector<float>{column.begin(), column.end()};
+    };
+    const std::vector<float> last = genes_of(4);
+    EXPECT_NE(genes_of(2), repaired) << "the organisms that have lived do not change";
+    advance();
+    EXPECT_EQ(genes_of(0), repaired) << "the elite";
+    EXPECT_NE(last, repaired);
+}
+
 TEST_F(RatingTest, ARestoredWorldContinues) {
     create(rated_world(true));
     advance_to_rating();
@@ -213,7 +275,7 @@ TEST_F(RatingTest, ARestoredWorldContinues) {
         ASSERT_TRUE(restored) << restored.error().message;
         EXPECT_EQ(again.hash(), world().hash()) << rated;
         EXPECT_EQ(again.awaits_fitness(), rated < 3);
-        EXPECT_EQ(again.given_fitness()[1], world().given_fitness()[1]);
+        EXPECT_EQ(again.ratings()[1], world().ratings()[1]);
         if (rated == 0) {
             ASSERT_TRUE(rate(1, {5, 4}));
         } else if (rated == 1) {
@@ -242,14 +304,17 @@ TEST_F(RatingTest, ImpossibleStatesAreRefused) {
     };
     EXPECT_FALSE(refused([](WorldState&) {}, sound));
     EXPECT_FALSE(refused([](WorldState&) {}, within));
-    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness.clear(); }, sound));
-    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness.resize(1); }, sound));
-    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness[0].resize(6); }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings.clear(); }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings.resize(1); }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings[0].fitness.resize(6); }, sound));
     EXPECT_TRUE(
-        refused([](WorldState& s) { s.given_fitness[1][0] = std::numeric_limits<double>::quiet_NaN(); }, sound));
-    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness[1][0] = -1.1e100; }, sound));
-    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness = {{1, 2, 3, 4, 5}, {1, 2, 3, 4, 5}}; }, sound));
-    EXPECT_TRUE(refused([](WorldState& s) { s.given_fitness.resize(2); }, within));
+        refused([](WorldState& s) { s.ratings[1].fitness[0] = std::numeric_limits<double>::quiet_NaN(); }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings[1].fitness[0] = -1.1e100; }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings = {{{1, 2, 3, 4, 5}}, {{1, 2, 3, 4, 5}}}; }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings.resize(2); }, within));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings[1].genes = {1, 2, 3}; }, sound));
+    EXPECT_TRUE(refused([](WorldState& s) { s.ratings[1].genes.assign(12, 1e9F); }, sound));
+    EXPECT_FALSE(refused([](WorldState& s) { s.ratings[1].genes.assign(12, 100); }, sound));
 }
 
 TEST_F(RatingTest, RemovalOfTheLastOrganismStillEndsInRating) {

@@ -35,7 +35,7 @@ WorldState full_state() {
     first.food[1].x = 77;
     first.poison.resize(1);
     state.islands[1].life_records.begin_generation(1);
-    state.given_fitness = {{1.5, -2}, {}};
+    state.ratings = {{{1.5, -2}, {7, 8, 9, 10, 11, 12, 1, 2, 3, 4, 5, 6}}, {}};
     state.ended = {{.generation = 7, .island = 0, .fitness_best = -0.5}, {.generation = 7, .island = 1}};
     state.ended[0].genes[2].mean = 0.25;
     return state;
@@ -53,7 +53,7 @@ TEST(StateBytes, AreReadAgain) {
     const auto read = read_state(bytes, shapes_of_full_state(), again);
     ASSERT_TRUE(read) << base::to_text(read.error());
     EXPECT_EQ(again.islands, state.islands);
-    EXPECT_EQ(again.given_fitness, state.given_fitness);
+    EXPECT_EQ(again.ratings, state.ratings);
     ASSERT_EQ(again.ended.size(), 2u);
     EXPECT_EQ(again.ended[0].fitness_best, -0.5);
     EXPECT_EQ(again.ended[0].genes[2].mean, 0.25);
@@ -70,14 +70,14 @@ TEST(StateBytes, AreThoseOfOldRunFiles) {
     for (const char byte : bytes_of(full_state())) {
         hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3;
     }
-    EXPECT_EQ(hash, 0xdd5754024258e094U);
+    EXPECT_EQ(hash, 0x19cdc048f4ff08deU);
 }
 
 TEST(StateBytes, RefuseImpossibleFitnessFromClients) {
     const std::vector<IslandShape> shapes(2, {.organisms = 3, .has_bodies = false});
     const auto columns = [](std::uint32_t first, std::uint32_t second, std::size_t fitness_bytes) {
         std::string bytes{static_cast<char>(4)};
-        for (const std::uint32_t count : {first, second}) {
+        for (const std::uint32_t count : {first, 0u, second, 0u}) { // numbers and repaired genes of each island
             bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
         }
         constexpr std::size_t island_bytes = 40 + 3 * 13; // counts and fates
@@ -86,7 +86,7 @@ TEST(StateBytes, RefuseImpossibleFitnessFromClients) {
     WorldState state;
     EXPECT_TRUE(read_state(columns(3, 1, 32), shapes, state));
     EXPECT_FALSE(read_state(columns(3, 1, 24), shapes, state)) << "a number is missing";
-    EXPECT_FALSE(read_state(columns(4, 0, 32), shapes, state)) << "more numbers than organisms";
+    EXPECT_FALSE(read_state(columns(3 * 16 + 1, 0, 392), shapes, state)) << "more numbers than organisms can have";
     EXPECT_FALSE(read_state(std::string_view{columns(3, 1, 32)}.substr(0, 6), shapes, state)) << "cut off";
     EXPECT_FALSE(read_state("\x08", shapes, state)) << "an unknown flag";
 }

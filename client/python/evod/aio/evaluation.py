@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from typing import Any, AsyncIterator, Callable, Protocol, TypeVar
 
+import numpy
 import numpy.typing
 
 from evod import plans
 from evod.aio.link import Link, blocking_call
 from evod.aio.watched import call_back
+from evod.errors import FailedPrecondition
 from evod.generations import Generation, History, Population
+from evod.objectives import Front
 from evod.plans import GenerationStream
 from evod.progress import ProgressLine
 from evod.rating import EndRules, Rater
@@ -28,7 +31,9 @@ class _Rated(Protocol):
     @property
     def name(self) -> str: ...
 
-    async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool: ...
+    async def _set_fitness(
+        self, population: Population, fitness: numpy.typing.NDArray[Any], genes: numpy.typing.NDArray[Any] | None
+    ) -> bool: ...
 
     async def pause(self) -> WorldInfo: ...
 
@@ -59,6 +64,24 @@ class Evaluation(History):
 
     def __repr__(self) -> str:
         return f"{super().__repr__()[:-1]}: {self.evaluation_count} evaluations, {self.reason or 'running'}>"
+
+    def front(self) -> Front:
+        """Returns the best organisms of the last generation, of a world with several objectives.
+
+        Raises
+        ------
+        FailedPrecondition
+            No generation has ended, or the world has one objective.
+        """
+        front = self[-1].front if len(self) else None
+        if front is None:
+            raise FailedPrecondition("no generation with several objectives has ended: create the world with "
+                                     "objectives=2")
+        return front
+
+    def hypervolume(self, reference: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
+        """Returns the hypervolume of the front of each generation, of shape (generations,): `evod.hypervolume`."""
+        return numpy.array([g.front.hypervolume(reference) for g in self[:] if g.front is not None])
 
     async def __aiter__(self) -> AsyncIterator[Generation]:
         index = 0
@@ -117,6 +140,6 @@ class Evaluation(History):
             population = await self._link.perform(plans.population(self._world.name, island, names))
             if population.generation != awaited.generation:
                 return  # another client has rated this generation
-            fitness = await blocking_call(self._rater.rate, population)
-            if not await self._world._set_fitness(population, fitness):
+            fitness, genes = await blocking_call(self._rater.rate, population)
+            if not await self._world._set_fitness(population, fitness, genes):
                 return

@@ -22,7 +22,7 @@ from evod.genes import Genes
 from evod.generations import Generation, Life, Population
 from evod.lab_plans import LabPlans
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.rating import EndRules, Rater, refuse_unknown
+from evod.rating import EndRules, Rater, refuse_unknown, Repaired
 from evod.results import DamagedWorld, EntityIds, WorldInfo
 from evod.tables import html_table
 from evod.v1 import commands_pb2 as c, session_pb2
@@ -396,7 +396,7 @@ class World(ParameterAttributes, WorldQueries):
     @watched
     async def evaluate(
         self,
-        function: Callable[[Genes, Life], numpy.typing.ArrayLike],
+        function: Callable[[Genes, Life], numpy.typing.ArrayLike | Repaired],
         generations: int | None = None,
         *,
         minimize: bool = False,
@@ -424,7 +424,10 @@ class World(ParameterAttributes, WorldQueries):
         function
             It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and
             returns one number for each organism, -1e100 to 1e100. Larger is better. Without bodies, the genes are the
-            free genes, if the world has any. The arrays are read-only.
+            free genes, if the world has any. The arrays are read-only. A function that repairs chromosomes returns an
+            `evod.Repaired`. If the world's parameter ``objectives`` is above 1, the function returns so many numbers
+            for each organism: an array of shape (count, objectives). `Generation.front` contains the best organisms
+            then, and the first objective is the fitness in all other results and in the criteria below.
         generations
             The number of further generations, at least 1. By default until the world is paused, or until another
             criterion.
@@ -474,14 +477,16 @@ class World(ParameterAttributes, WorldQueries):
         """
         refuse_unknown(unknown)
         rules = EndRules(target=target, stagnation=stagnation, seconds=seconds, until=until)
-        visible, has_bodies = await self._link.perform(self._plans.rated_genes(self.name))
-        rater = Rater(function, visible, has_bodies, minimize=minimize, only_new=only_new)
+        visible, has_bodies, objectives = await self._link.perform(self._plans.rated_genes(self.name))
+        rater = Rater(function, visible, has_bodies, minimize=minimize, only_new=only_new, objectives=objectives)
         stream = await self._link.perform(self._plans.run(self.name, generations))
         return Evaluation(self._link, stream, self, rater, rules, on_generation, progress)
 
-    async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool:
+    async def _set_fitness(
+        self, population: Population, fitness: numpy.typing.NDArray[Any], genes: numpy.typing.NDArray[Any] | None
+    ) -> bool:
         life = population.life
-        plan = self._plans.set_fitness(self.name, life.generation, life.island, fitness)
+        plan = self._plans.set_fitness(self.name, life.generation, life.island, fitness, genes)
         return await self._link.perform(plan)
 
     async def run_until_tick(self, tick: int) -> WorldInfo:

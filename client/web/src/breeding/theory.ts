@@ -15,7 +15,7 @@ export interface Selection {
   method: "roulette"|"stochastic_universal"|"tournament"|"random"|"truncation";
   pressure: "fitness"|"windowed_fitness"|"rank"; // what decides the chance of an organism
   independent_picks: boolean; // a pick does not change the chances in other picks
-  overlapping: boolean; // steady_state: most organisms survive into the next generation
+  overlapping: boolean; // steady_state, nsga2: most organisms survive into the next generation
   picks: number;
 }
 
@@ -43,7 +43,7 @@ export function selection_of(record: BreedingRecord): Selection {
                                                                                             "fitness",
     independent_picks: method === "roulette" ||
       (method === "tournament" && Math.min(record.number("tournament_winners") ?? 1, picks) === 1),
-    overlapping: record.choice("population_model") === "steady_state",
+    overlapping: ["steady_state", "nsga2"].includes(record.choice("population_model") ?? ""),
   };
 }
 
