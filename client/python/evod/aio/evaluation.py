@@ -10,8 +10,7 @@ from typing import Any, AsyncIterator, Callable, Protocol, TypeVar
 import numpy.typing
 
 from evod import plans
-from evod.aio.link import Link, blocking_call
-from evod.aio.watched import call_back
+from evod.aio.link import Link, blocking_call, call_back
 from evod.generations import Generation, History, Population
 from evod.plans import GenerationStream
 from evod.progress import ProgressLine
