@@ -30,8 +30,8 @@ struct GeneRange {
     friend bool operator==(const GeneRange&, const GeneRange&) = default;
 };
 
-/// Returns whether chromosomes contain the genes of the body, and the weights of the brain; otherwise they consist of the
-/// free genes.
+/// Returns whether chromosomes contain the genes of the body, and the weights of the brain; otherwise they consist of
+/// the free genes.
 bool has_body_genes(const Parameters& parameters);
 
 /// The number of genes of a chromosome, at least 1.

@@ -1,5 +1,6 @@
 #include "server/replay/generation_reader.h"
 
+#include "server/replay/columns.h"
 #include "server/replay/mismatch.h"
 
 #include <utility>

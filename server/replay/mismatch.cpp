@@ -1,6 +1,7 @@
 #include "server/replay/mismatch.h"
 
 #include "proto/text/number_text.h"
+#include "server/replay/columns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -391,7 +392,8 @@ Found compare(const simulation::WorldState& stored, const simulation::WorldState
     if (auto mismatch = compare_islands(stored.islands, simulated.islands)) {
         return mismatch;
     }
-    if (auto mismatch = compare_islands(stored.ended, simulated.ended)) {
+    const std::vector<std::string> gene_names = gene_names_of(stored.parameters.active);
+    if (auto mismatch = compare_islands(stored.ended, simulated.ended, GeneNames{gene_names})) {
         return mismatch;
     }
     return compare_islands(stored.given_fitness, simulated.given_fitness);

@@ -1,6 +1,7 @@
 #include "server/replay/verify.h"
 
 #include "server/base/inline_executor.h"
+#include "server/replay/columns.h"
 #include "server/replay/mismatch.h"
 #include "server/replay/rerun.h"
 #include "server/run_file/check.h"

@@ -105,8 +105,10 @@ TEST(FreeGenesAlone, SixOfAListStayAPermutation) {
     Parameters parameters;
     parameters.mutation_chance = parameters.rearrange_chance = 1;
     parameters.rearranging = OrderMutationMethod::Inversion;
-    parameters.listed_genes =
-        FreeGenes{std::vector<FreeGene>{{.kind = FreeGene::Kind::Permutation, .name = "tour", .count = 6}}};
+    FreeGene tour;
+    tour.kind = FreeGene::Kind::Permutation;
+    tour.count = 6;
+    parameters.listed_genes = FreeGenes{{tour}};
     GeneMatrix genes(6, 50);
     genes.colwise() = Eigen::ArrayXf::LinSpaced(6, 0, 5);
     const NextGeneration next = bred(parameters, genes);

@@ -26,7 +26,7 @@ test("random floats are the same after writing and reading", () => {
 
 test("a wrong file names the line, what it contains and what is allowed", () => {
   for (const [text, problem] of [
-    ["", /^line 1: got "", allowed: the heading island,organism and the names of the genes$/],
+    ["", /^line 1: got "", allowed: island,organism as the first columns, and a column with a name for each gene$/],
     ["island,organism\n0,0\n", /^line 1: /],
     [`${heading},\n`, /^line 1: /],
     [`${heading}\n`, /^there is no organism in it$/],
