@@ -89,18 +89,17 @@ std::optional<Columns> read_heading(std::span<const std::string_view> cells, std
     for (std::string_view rest = population_heading.substr(genes_at); !rest.empty();) {
         const std::string_view name = rest.substr(0, rest.find(','));
         rest.remove_prefix(std::min(name.size() + 1, rest.size()));
-        const std::size_t column = take(name);
-        if (column == names.size()) {
-            return std::nullopt;
+        if (const std::size_t column = take(name); column < names.size()) {
+            add_gene(column);
         }
-        add_gene(column);
     }
     for (std::size_t column = 0; column < names.size(); ++column) {
         if (!taken[column]) {
             add_gene(column);
         }
     }
-    return columns.genes.size() <= genes_max ? std::optional{columns} : std::nullopt;
+    const bool has_genes = !columns.genes.empty() && columns.genes.size() <= genes_max;
+    return has_genes ? std::optional{columns} : std::nullopt;
 }
 
 /// Parses a gene. With a separator other than the comma, a comma may be the decimal point.
@@ -135,9 +134,7 @@ Result<Population> read_population(std::istream& in) {
     const bool has_heading = rows.next();
     const auto columns = has_heading ? read_heading(rows.cells(), population.gene_names) : std::nullopt;
     if (!columns) {
-        return wrong_line(1,
-                          "the heading " + std::string{population_heading} +
-                              " in any order, to which the names of further genes may be added, each name once",
+        return wrong_line(1, "the heading island,organism and the names of the genes, in any order, each name once",
                           joined(rows.cells()));
     }
 

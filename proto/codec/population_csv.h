@@ -3,7 +3,7 @@
 //   island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius
 //   0,0,103.2,97.5,…
 //
-// The columns of further genes follow if the chromosomes have more than the six body genes. evod numbers islands and
+// There is a column for each gene of the chromosomes, in their order. evod numbers islands and
 // organisms from 0, in order, and writes each gene as the shortest text that parses to the same float.
 //
 // A file that another program has changed may have its columns in any order, cells in quotation marks or with blanks,
@@ -22,12 +22,13 @@
 
 namespace evod::codec {
 
+/// The heading of a file of chromosomes with the genes of the body alone.
 constexpr std::string_view population_heading =
     "island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius";
 constexpr std::size_t genes_max = 10'000; // columns of genes in a file
 
 struct Population {
-    std::vector<std::string> gene_names;     // the first six are those in population_heading
+    std::vector<std::string> gene_names;     // at least one; those of the body come first
     std::vector<std::vector<float>> islands; // shape (islands, organisms · gene_names.size()): organism by organism
 
     std::size_t organism_count(std::size_t island) const { return islands[island].size() / gene_names.size(); }

@@ -309,7 +309,7 @@ std::vector<std::size_t> of_rank_0(const std::vector<std::size_t>& runs, runtime
     return base::unpack<std::vector<std::size_t>>(processes.gather(base::pack(runs)).front());
 }
 
-/// Prints which cells were left out, which cannot evolve, and which given seeds R rounds. A warning names one cell.
+/// Prints which cells were left out, which cannot evolve, and which seeds R rounds. A warning names one cell.
 void print_warnings(const Sweep& sweep) {
     constexpr std::size_t printed_max = 10;
     for (std::size_t i = 0; i < std::min(sweep.skipped.size(), printed_max); ++i) {
@@ -328,8 +328,8 @@ void print_warnings(const Sweep& sweep) {
         const std::string more = of.size() > 1 ? " and " + counted(of.size() - 1, "more cell") : "";
         warn((of.size() == sweep.cells.size() ? "all cells" : "cell " + std::to_string(of[0]) + more) + ": " + warning);
     }
-    for (const base::Seed seed : sweep.seeds) {
-        if (const auto warning = warning_about(seed)) {
+    for (std::uint32_t replicate = 0; replicate < sweep.replicates; ++replicate) {
+        if (const auto warning = warning_about(sweep.seed_of(replicate))) {
             warn(*warning);
             break;
         }

@@ -1,11 +1,13 @@
 #include "server/evolution/brain_layout.h"
 
+#include "server/evolution/gene_layout.h"
+
 #include <span>
 
 namespace evod::evolution {
 
 BrainLayout brain_layout(const Parameters& p) {
-    if (p.controller == Controller::Rules) {
+    if (p.controller == Controller::Rules || !has_body_genes(p)) {
         return {};
     }
     BrainLayout layout{.inputs = {},

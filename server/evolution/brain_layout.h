@@ -23,7 +23,7 @@ namespace evod::evolution {
 constexpr std::array<std::string_view, brain_inputs_max> brain_input_names = {
     "food_bearing", "food_proximity", "poison_bearing", "poison_proximity", "speed", "health", "wall_proximity"};
 
-/// The shape of the networks of a world. It is empty if the controller is not `network`.
+/// The shape of the networks of a world. It is empty if the controller is not `network`, or without has_body_genes().
 struct BrainLayout {
     std::vector<BrainInput> inputs;
     std::uint32_t hidden_count = 0;

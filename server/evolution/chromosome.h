@@ -51,7 +51,7 @@ std::span<T, extent> part_of(std::span<T, extent> genes, GeneRange range) {
 
 /// Divides the genes of a chromosome into blocks of body_gene_count genes, for loops over organisms that are fast if
 /// the number of genes is a constant. Calls visit(first) with the index of each block's first gene. The last block may
-/// contain genes of the block before it.
+/// contain genes of the block before it. There must be at least body_gene_count genes: with_a_block().
 template <class Visit>
 void for_each_block_of_genes(unsigned gene_count, const Visit& visit) {
     unsigned first = 0;
@@ -61,6 +61,15 @@ void for_each_block_of_genes(unsigned gene_count, const Visit& visit) {
     if (first < gene_count) {
         visit(gene_count - body_gene_count);
     }
+}
+
+/// Returns the chromosomes with genes of 0 at their ends, so that there are body_gene_count genes.
+///
+/// genes  fewer genes than that.
+inline GeneMatrix with_a_block(const GeneMatrix& genes) {
+    GeneMatrix longer = GeneMatrix::Zero(body_gene_count, genes.cols());
+    longer.topRows(genes.rows()) = genes;
+    return longer;
 }
 
 /// Moves every gene outside its bounds to the nearer bound. Returns how many genes it moved.

@@ -69,10 +69,7 @@ Crossover<extent>::Crossover(const Parameters& parameters, unsigned gene_count)
     : method_{parameters.crossover}
     , chance_{parameters.crossover_chance}
     , gene_count_{gene_count}
-    , cut_count_{cut_count(parameters)} {
-    if (cut_count_ == 0) {
-        return;
-    }
+    , cut_count_{std::min(cut_count(parameters), gene_count - 1)} {
     cut_set_count_ = set_count(gene_count - 1, cut_count_);
     EVOD_ASSERT(cut_set_count_ >= 1);
     for (std::uint64_t index = 0; index < cut_set_count_ && cut_set_count_ <= kept_masks_max; ++index) {

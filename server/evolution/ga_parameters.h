@@ -1,7 +1,8 @@
 // The parameters of the genetic algorithm, one line each. Macros generate the struct and the registry from these lines.
 //
 // A line contains: name, default, minimum, maximum, unit, when a change takes effect, one sentence of help. A TOPIC is the
-// heading under which people see the parameters that follow it.
+// heading under which people see the parameters that follow it. EVOD_FITNESS_PARAMETERS is the beginning of the topic of
+// parameters/model_parameters.h; it is here because the genes of a world depend on it (gene_layout.h).
 #pragma once
 
 #include "server/base/parameter.h"
@@ -9,6 +10,7 @@
 
 namespace evod::evolution {
 
+enum class FitnessFunction { Life, GeneSum, Rastrigin, External };
 enum class PopulationModel { Hybrid, Generational, SteadyState, Nsga2 };
 enum class FitnessScaling { None, Windowing, LinearRanking, ExponentialRanking };
 enum class SelectionMethod { Roulette, StochasticUniversal, Tournament, Random, Truncation };
@@ -26,6 +28,7 @@ enum class Locomotion { Newtonian, Kinematic };
 
 } // namespace evod::evolution
 
+EVOD_CHOICE_NAMES(evod::evolution::FitnessFunction, "life", "gene_sum", "rastrigin", "external")
 EVOD_CHOICE_NAMES(evod::evolution::PopulationModel, "hybrid", "generational", "steady_state", "nsga2")
 EVOD_CHOICE_NAMES(evod::evolution::FitnessScaling, "none", "windowing", "linear_ranking", "exponential_ranking")
 EVOD_CHOICE_NAMES(evod::evolution::SelectionMethod, "roulette", "stochastic_universal", "tournament", "random",
@@ -44,6 +47,12 @@ EVOD_CHOICE_NAMES(evod::evolution::FreeGeneStart, "uniform", "latin_hypercube")
 EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
 
 // clang-format off
+#define EVOD_FITNESS_PARAMETERS(TOPIC, REAL, COUNT, FLAG, CHOICE)                                                      \
+    TOPIC("Experiment")                                                                                                \
+    CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is a weighted sum of seconds lived, health at the end, food eaten and poison eaten, by default seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone; external: at the end of each generation the world waits until a client has sent the fitness of every organism (SetFitness).") \
+    COUNT(objectives, 1, 1, 16, "numbers", Reset, "Numbers with which a client rates each organism, if fitness is external. With several, organisms are ranked by fronts and crowding (NSGA-II), and the first number is the fitness in statistics, charts and termination criteria.") \
+    FLAG(external_bodies, true, Reset, "Whether organisms live on the islands before a client rates them, if fitness is external. Off: there are no bodies, and a generation lasts one tick, as for gene_sum.")
+
 #define EVOD_EVOLUTION_PARAMETERS(TOPIC, REAL, COUNT, FLAG, CHOICE)                                                    \
     TOPIC("Population")                                                                                                \
     COUNT(population_size, 50, 1, 4'000'000, "organisms", NextGeneration, "Organisms on each island.")                 \
@@ -64,7 +73,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     TOPIC("Crossover")                                                                                                 \
     CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How the genes of two parents are mixed: uniform, single_point and multi_point give each gene of one parent to one child and that of the other parent to the other child; blend gives the children complementary weighted means of the parents; simulated_binary gives them values on both sides of the parents', mostly near them.")                   \
     REAL(crossover_chance, 1, 0, 1, "chance", NextTick, "Chance that the genes of a pair are mixed; otherwise the children are copies of the parents.") \
-    COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Number of cut points of multi_point crossover.")                                     \
+    COUNT(crossover_cuts, 2, 1, 5, "cuts", NextTick, "Number of cut points of multi_point crossover; at most one fewer than there are genes.")                                     \
     REAL(crossover_spread_index, 15, 0, 1000, "", NextTick, "Index of the distribution of simulated_binary crossover: the larger it is, the nearer children are to their parents.") \
     CHOICE(mutate_group, GeneGroup, All, NextTick, "Which genes mutate: all, those of the body, the weights of the brain, or the free genes. Crossover mixes all genes.") \
     TOPIC("Mutation")                                                                                                  \
@@ -140,6 +149,7 @@ using base::count_max;
 /// Every parameter of the genetic algorithm. Each is within its range, and no lower bound of a gene is above its upper
 /// bound.
 struct Parameters {
+    EVOD_FITNESS_PARAMETERS(EVOD_NO_FIELD, EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
     EVOD_EVOLUTION_PARAMETERS(EVOD_NO_FIELD, EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
 
     /// The list of the free genes, which is not in the registry; empty, or of `free_genes` genes. It takes effect at a

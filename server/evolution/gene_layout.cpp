@@ -5,23 +5,27 @@
 
 namespace evod::evolution {
 
+bool has_body_genes(const Parameters& parameters) {
+    return parameters.fitness != FitnessFunction::External || parameters.external_bodies || parameters.free_genes == 0;
+}
+
 unsigned gene_count(const Parameters& parameters) {
     return genes_of(GeneGroup::All, parameters).count;
 }
 
 GeneRange genes_of(GeneGroup group, const Parameters& parameters) {
-    const unsigned brain = brain_genes(parameters).count;
+    const unsigned body = has_body_genes(parameters) ? body_gene_count : 0, brain = brain_genes(parameters).count;
     switch (group) {
     case GeneGroup::All:
         break;
     case GeneGroup::Body:
-        return {0, body_gene_count};
+        return {0, body};
     case GeneGroup::Brain:
-        return {body_gene_count, brain};
+        return {body, brain};
     case GeneGroup::Free:
-        return {body_gene_count + brain, parameters.free_genes};
+        return {body + brain, parameters.free_genes};
     }
-    return {0, body_gene_count + brain + parameters.free_genes};
+    return {0, body + brain + parameters.free_genes};
 }
 
 GeneRange unlisted_genes_of(GeneGroup group, const Parameters& parameters) {
@@ -46,7 +50,7 @@ GeneBounds gene_bounds(const Parameters& parameters) {
         bounds.min.segment(genes.first, genes.count) = static_cast<float>(least);
         bounds.max.segment(genes.first, genes.count) = static_cast<float>(most);
     };
-    for (unsigned gene = 0; gene < body_gene_count; ++gene) {
+    for (unsigned gene = 0; gene < genes_of(GeneGroup::Body, parameters).count; ++gene) {
         set({gene, 1}, min[gene], max[gene]);
     }
     const double weight_limit = brain_genes(parameters).limit;
@@ -63,9 +67,11 @@ GeneBounds gene_bounds(const Parameters& parameters) {
 }
 
 GeneLayout gene_layout(const Parameters& parameters) {
-    GeneLayout layout{.names = {body_gene_names.begin(), body_gene_names.end()},
-                      .groups = std::vector<GeneGroup>(body_gene_count, GeneGroup::Body),
-                      .bounds = gene_bounds(parameters)};
+    GeneLayout layout{.names = {}, .groups = {}, .bounds = gene_bounds(parameters)};
+    if (has_body_genes(parameters)) {
+        layout.names.assign(body_gene_names.begin(), body_gene_names.end());
+        layout.groups.assign(body_gene_count, GeneGroup::Body);
+    }
     for (const std::string& weight : brain_gene_names(parameters)) {
         layout.names.push_back(weight);
         layout.groups.push_back(GeneGroup::Brain);

@@ -1,5 +1,6 @@
 // Gene layout: which genes the chromosomes of a world have, in chromosome order: the six genes of the body, the weights
-// of the brain, and the free genes.
+// of the brain, and the free genes. If a client rates organisms without bodies that have free genes, the chromosome
+// consists of the free genes alone: nothing reads the others.
 //
 // Determinism  the numbers of genes and their names depend only on parameters that take effect at a reset, so all
 //              generations of a run have the same layout. The bounds may change between two generations.
@@ -17,7 +18,7 @@
 
 namespace evod::evolution {
 
-/// The genes of the body, which every chromosome begins with.
+/// The genes of the body, with which a chromosome begins if has_body_genes().
 enum Gene : unsigned { NormalSpeed, Impulse, BodySize, BaseHealth, FoodRadius, PoisonRadius };
 constexpr unsigned body_gene_count = 6;
 constexpr std::array<std::string_view, body_gene_count> body_gene_names = {
@@ -29,7 +30,11 @@ struct GeneRange {
     friend bool operator==(const GeneRange&, const GeneRange&) = default;
 };
 
-/// The number of genes of a chromosome.
+/// Returns whether chromosomes contain the genes of the body, and the weights of the brain; otherwise they consist of
+/// the free genes.
+bool has_body_genes(const Parameters& parameters);
+
+/// The number of genes of a chromosome, at least 1.
 unsigned gene_count(const Parameters& parameters);
 
 /// The genes of a group; GeneGroup::All is the whole chromosome.

@@ -110,11 +110,14 @@ std::vector<MigrationRoute> plan_migration(std::span<const std::uint32_t> popula
             wanted.push_back(std::min(parameters.migrant_count, populations[edge->from]));
         }
         const std::vector<std::uint32_t> leaving = share_of_places(
-            std::move(wanted), populations[to],
+            std::move(wanted), populations[to] - std::min(parameters.elite_count, populations[to]),
             base::RandomStream{{seed, base::Purpose::Migration, to, generation}, 0, LastPlaces}, executor);
         std::uint32_t place = 0;
         for (const std::uint32_t count : leaving) {
-            routes.push_back({.from = first++->from, .to = to, .count = count, .first_place = place});
+            const std::uint32_t from = first++->from;
+            if (count > 0) {
+                routes.push_back({.from = from, .to = to, .count = count, .first_place = place});
+            }
             place += count;
         }
     }
@@ -134,14 +137,21 @@ std::vector<std::uint32_t> emigrants(const MigrationRoute& route, Ranking& ranki
 
 std::vector<std::uint32_t> replaced_first(std::uint32_t island, Ranking& ranking, const Parameters& parameters,
                                           base::Seed seed, std::uint64_t generation) {
+    const auto best_first = ranking.best_first();
+    const auto elite = best_first.first(std::min<std::size_t>(parameters.elite_count, best_first.size()));
     if (parameters.immigrants_replace == Replaced::Worst) {
-        const auto order = ranking.best_first();
-        return {order.rbegin(), order.rend()};
+        return {best_first.rbegin(), best_first.rend() - static_cast<std::ptrdiff_t>(elite.size())};
     }
     base::InlineExecutor executor;
     base::RandomStream random{{seed, base::Purpose::Migration, island, generation}, 0, ReplacedChoice};
     const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
-    return draw_unique(population, population, random, executor);
+    std::vector<std::uint32_t> replaced = draw_unique(population, population, random, executor);
+    std::vector<bool> is_elite(population);
+    for (const std::uint32_t organism : elite) {
+        is_elite[organism] = true;
+    }
+    std::erase_if(replaced, [&](std::uint32_t organism) { return is_elite[organism]; });
+    return replaced;
 }
 
 std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fitness, const Parameters& parameters,

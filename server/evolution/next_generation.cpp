@@ -18,7 +18,7 @@ NextGeneration next_generation(std::span<const double> fitness, const GeneMatrix
                         .elite_count = places.elite,
                         .survivor_count = places.survivors,
                         .clamped_count = 0};
-    if (genes.rows() == body_gene_count) {
+    if (genes.rows() == body_gene_count && parameters.free_genes == 0) {
         fill<body_gene_count>(next, choice, genes, parameters, key, executor);
     } else {
         fill_wide(next, choice, genes, parameters, key, executor);

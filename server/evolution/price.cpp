@@ -165,6 +165,12 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
     EVOD_ASSERT(bred_from.cols() == before.cols());
     EVOD_ASSERT(parents.size() == static_cast<std::size_t>(born.cols()));
     EVOD_ASSERT(before.rows() == born.rows());
+    if (born.rows() < body_gene_count) {
+        SelectionAccount account =
+            account_for(with_a_block(before), with_a_block(bred_from), with_a_block(born), parents, executor);
+        account.resize(static_cast<std::size_t>(born.rows()));
+        return account;
+    }
     SelectionAccount account(static_cast<std::size_t>(born.rows()));
     for_each_block_of_genes(static_cast<unsigned>(born.rows()), [&](unsigned first) {
         account_for_genes(first, before, bred_from, born, parents, executor, account);

@@ -45,6 +45,11 @@ std::string differences_of(const run_file::RunIdentity& there, const parameters:
     return text;
 }
 
+/// Whether a run with the limit `wanted` goes on where a run with the limit `stored` ends; 0 means no limit.
+bool is_longer(std::uint32_t wanted, std::uint32_t stored) {
+    return stored != 0 && (wanted == 0 || wanted > stored);
+}
+
 /// Why a run cannot be continued by `evod run`; nullopt if it can.
 std::optional<base::Refusal> refusal_of(RunFile& file, const parameters::Experiment& experiment,
                                         const simulation::FirstPopulation& first_population) {
@@ -60,24 +65,20 @@ std::optional<base::Refusal> refusal_of(RunFile& file, const parameters::Experim
     if (file.journal().last_number() > 0) {
         return refused(" contains commands of clients, so only a server can continue it: name another file");
     }
-    parameters::Parameters longer = file.identity().parameters;
-    longer.generation_limit = experiment.parameters.generation_limit;
-    if (longer == experiment.parameters && !(longer == file.identity().parameters)) {
-        return refused(" contains another run: its generation_limit is " +
-                       std::to_string(file.identity().parameters.generation_limit) + ", not " +
-                       std::to_string(longer.generation_limit) +
-                       "; to add generations to it, move the file into an empty folder, start evod --data FOLDER, and "
-                       "enter evoctl set generation_limit=" +
-                       std::to_string(longer.generation_limit) + " and evoctl start; or name another file");
+    run_file::RunIdentity longer = file.identity();
+    if (is_longer(experiment.parameters.generation_limit, longer.parameters.generation_limit)) {
+        longer.parameters.generation_limit = experiment.parameters.generation_limit;
     }
-    if (const std::string text = differences_of(file.identity(), experiment, first_population); !text.empty()) {
+    if (const std::string text = differences_of(longer, experiment, first_population); !text.empty()) {
         return refused(" contains another run: " + text + "; name another file, or continue with the same values");
     }
     return std::nullopt;
 }
 
 /// Whether the run is over after the last generation in its file.
-Result<bool> is_over(RunFile& file, std::uint64_t generation) {
+///
+/// limit  the generation_limit of the run
+Result<bool> is_over(RunFile& file, std::uint64_t generation, std::uint32_t limit) {
     const auto opening = file.generations().opening_of(generation);
     if (!opening) {
         return opening.error();
@@ -90,7 +91,8 @@ Result<bool> is_over(RunFile& file, std::uint64_t generation) {
         return false;
     }
     const parameters::ParameterSet& set = (*opening)->parameters;
-    const auto active = parameters::taking_effect(set.active, set.requested, base::Effect::NextTick);
+    auto active = parameters::taking_effect(set.active, set.requested, base::Effect::NextTick);
+    active.generation_limit = limit;
     const bool lived = std::ranges::any_of(*statistics, [](const auto& island) { return island.alive_count > 0; });
     const double best = std::ranges::max(*statistics, {}, &simulation::GenerationStatistics::fitness_best).fitness_best;
     const evolution::Progress progress =
@@ -133,15 +135,19 @@ Result<void> RunRecording::examine(const parameters::Experiment& experiment,
     if (auto refused = refusal_of(**file, experiment, first_population)) {
         return *std::move(refused);
     }
-    return read_part(**file);
+    return read_part(**file, experiment);
 }
 
-Result<void> RunRecording::read_part(RunFile& file) {
+Result<void> RunRecording::read_part(RunFile& file, const parameters::Experiment& experiment) {
     const std::uint64_t last = file.generations().last();
     seed_ = file.identity().seed;
     first_population_ = file.identity().first_population;
     generations_ended_ = file.generations().last_ended();
-    const auto over = is_over(file, last);
+    const std::uint32_t limit = experiment.parameters.generation_limit;
+    if (limit != file.identity().parameters.generation_limit) {
+        longer_limit_ = limit;
+    }
+    const auto over = is_over(file, last, limit);
     if (!over) {
         return over.error();
     }
@@ -154,6 +160,10 @@ Result<void> RunRecording::read_part(RunFile& file) {
         return file.damaged("the beginning of generation " + std::to_string(last));
     }
     begun_ = **std::move(begun);
+    if (longer_limit_) {
+        parameters::ParameterSet& set = begun_.opening.parameters;
+        set.active.generation_limit = set.requested.values.generation_limit = limit;
+    }
     auto hashes = file.hashes(begun_.opening.moment.tick, file.last_tick());
     if (!hashes) {
         return hashes.error();
@@ -216,7 +226,7 @@ Result<void> RunRecording::begin(const simulation::World& world, const simulatio
     }
     file_ = *std::move(file);
     file_->begin();
-    return {};
+    return longer_limit_ ? file_->set_generation_limit(*longer_limit_) : Result<void>{};
 }
 
 Result<void> RunRecording::create(const simulation::RunId& run_id, const run_file::GenerationBegun& begun,

@@ -29,7 +29,8 @@ enum class Stored : std::uint8_t { Nothing, Part, Whole };
 class RunRecording {
   public:
     /// Opens the run file of a run; it need not exist. A refusal leaves the file unchanged. Refused if the file is no
-    /// run file, is damaged, is being written, or contains another run than that of this experiment.
+    /// run file, is damaged, is being written, or contains another run than that of this experiment. A run with
+    /// a higher generation_limit continues a stored run that is otherwise the same.
     ///
     /// experiment        if it has no seed, the file may have any.
     /// first_population  may have fewer organisms than the world has places; the file then begins with these.
@@ -75,7 +76,7 @@ class RunRecording {
     /// Finds out what the file contains.
     base::Result<void> examine(const parameters::Experiment& experiment,
                                const simulation::FirstPopulation& first_population);
-    base::Result<void> read_part(run_file::RunFile& file);
+    base::Result<void> read_part(run_file::RunFile& file, const parameters::Experiment& experiment);
     base::Result<void> create(const simulation::RunId& run_id, const run_file::GenerationBegun& begun,
                               const simulation::World& world);
 
@@ -83,6 +84,7 @@ class RunRecording {
     std::optional<run_file::RunFileLock> lock_;
     std::unique_ptr<run_file::RunFile> file_; // nullptr before begin() and after close()
     Stored stored_ = Stored::Nothing;
+    std::optional<std::uint32_t> longer_limit_; // the generation_limit that replaces the stored one
     base::Seed seed_{};
     simulation::FirstPopulation first_population_;
     run_file::GenerationBegun begun_; // the beginning of the generation at which the run continues

@@ -1,6 +1,7 @@
 #include "server/experiments/trials.h"
 
 #include "server/base/assert.h"
+#include "server/base/exact_number.h"
 
 #include <algorithm>
 #include <atomic>
@@ -32,7 +33,7 @@ void for_each_trial(std::size_t count, std::size_t jobs, const std::function<voi
 }
 
 base::Seed replicate_seed(base::Seed seed, std::uint32_t replicate) {
-    return {base::RandomStream{{seed, base::Purpose::Replicate, 0, 0}, replicate}.long_word()};
+    return base::portable_seed(base::RandomStream{{seed, base::Purpose::Replicate, 0, 0}, replicate}.long_word());
 }
 
 } // namespace evod::experiments

@@ -23,7 +23,7 @@ void for_each_trial(std::size_t count, std::size_t jobs, const std::function<voi
                     const std::function<bool()>& stopped);
 
 /// The seed of a replicate, derived from the seed of the sweep or comparison. It is the same in every cell, so that
-/// cells can be compared pair by pair (common random numbers).
+/// cells can be compared pair by pair (common random numbers). It is below 2^53 (base::portable_seed()).
 base::Seed replicate_seed(base::Seed seed, std::uint32_t replicate);
 
 } // namespace evod::experiments

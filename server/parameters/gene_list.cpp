@@ -71,8 +71,9 @@ class Checker {
         }
         const bool numbered = gene.kind == FreeGene::Kind::Permutation;
         for (std::uint32_t i = 0; i < (numbered ? std::min(gene.count, listed_genes_max) : 1); ++i) {
-            if (!names_.insert(gene.name + (numbered ? std::to_string(i) : "")).second) {
-                refuse(".name", "a name that no other gene has", quoted(gene.name));
+            const std::string name = gene.name + (numbered ? std::to_string(i) : "");
+            if (!names_.insert(name).second) {
+                refuse(".name", "a name that no other gene has", quoted(name));
                 return;
             }
         }

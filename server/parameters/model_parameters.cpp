@@ -46,7 +46,7 @@ constexpr std::string_view most_used[] = {
 // clang-format on
 
 std::vector<ParameterDescription> make_registry() {
-    using namespace evolution; // for the enumeration names in EVOD_EVOLUTION_PARAMETERS
+    using namespace evolution; // for the names of enumerations in the lists
     using base::count_max;
     std::vector<ParameterDescription> registry;
     std::string_view topic;
@@ -55,6 +55,7 @@ std::vector<ParameterDescription> make_registry() {
         const bool is_most_used = std::ranges::find(most_used, name) != std::end(most_used);
         registry.push_back({name, unit, help, topic, is_most_used, effect, std::move(kind)});
     };
+    EVOD_FITNESS_PARAMETERS(EVOD_TOPIC_LINE, EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
     EVOD_MODEL_PARAMETERS(EVOD_TOPIC_LINE, EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
     EVOD_EVOLUTION_PARAMETERS(EVOD_TOPIC_LINE, EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
     return registry;
@@ -414,8 +415,7 @@ void check_totals(const Parameters& p, Faults& faults) {
                       std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
     }
     faults.require_order("brain_weight_limit", p.brain_weight_limit, "brain_weight_initial", p.brain_weight_initial);
-    const bool has_brains = p.controller == evolution::Controller::Network;
-    if (has_brains) {
+    if (p.controller == evolution::Controller::Network && evolution::has_body_genes(p)) {
         if (evolution::brain_layout(p).inputs.empty()) {
             faults.refuse("sense_food",
                           "at least one sense: sense_food, sense_poison, sense_speed, sense_health or sense_wall",

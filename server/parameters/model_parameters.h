@@ -1,5 +1,5 @@
-// The registry of all parameters of a world: the parameters of the genetic algorithm (evolution/ga_parameters.h), and the
-// parameters of the model, one line each below.
+// The registry of all parameters of a world: the fitness function and the parameters of the genetic algorithm
+// (evolution/ga_parameters.h), and the parameters of the model, one line each below.
 //
 // Macros generate the struct, its defaults and the registry from these lines. Validation, JSON files, the protocol,
 // evoctl's help and docs/PARAMETERS.md use the registry, so a new parameter needs one new line, here or in
@@ -19,22 +19,17 @@
 
 namespace evod::parameters {
 
-enum class FitnessFunction { Life, GeneSum, Rastrigin, External };
+using evolution::FitnessFunction;
 enum class FleeRule { Nearer, Always };
 enum class IntegratorChoice { SymplecticEuler, ExplicitEuler, BackwardEuler };
 
 } // namespace evod::parameters
 
-EVOD_CHOICE_NAMES(evod::parameters::FitnessFunction, "life", "gene_sum", "rastrigin", "external")
 EVOD_CHOICE_NAMES(evod::parameters::FleeRule, "nearer", "always")
 EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "explicit_euler", "backward_euler")
 
 // clang-format off
 #define EVOD_MODEL_PARAMETERS(TOPIC, REAL, COUNT, FLAG, CHOICE)                                                        \
-    TOPIC("Experiment")                                                                                                \
-    CHOICE(fitness, FitnessFunction, Life, Reset, "The fitness function: life is a weighted sum of seconds lived, health at the end, food eaten and poison eaten, by default seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone; external: at the end of each generation the world waits until a client has sent the fitness of every organism (SetFitness).") \
-    COUNT(objectives, 1, 1, 16, "numbers", Reset, "Numbers with which a client rates each organism, if fitness is external. With several, organisms are ranked by fronts and crowding (NSGA-II), and the first number is the fitness in statistics, charts and termination criteria.") \
-    FLAG(external_bodies, true, Reset, "Whether organisms live on the islands before a client rates them, if fitness is external. Off: there are no bodies, and a generation lasts one tick, as for gene_sum.") \
     REAL(fitness_per_second, 1, -1000, 1000, "fitness/s", NextGeneration, "Weight of each second lived in the fitness function life.") \
     REAL(fitness_per_health, 1, -1000, 1000, "fitness/health", NextGeneration, "Weight of each unit of health at the end in the fitness function life; the health of dead organisms is 0.") \
     REAL(fitness_per_food, 0, -1000, 1000, "fitness/item", NextGeneration, "Weight of each food item eaten in the fitness function life.") \
@@ -138,7 +133,7 @@ struct ParameterDescription {
     std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
 };
 
-/// Returns all parameters: first those of the model, then those of the genetic algorithm, in the order of their lists.
+/// Returns all parameters in the order of their lists: the fitness function, the model, the genetic algorithm.
 std::span<const ParameterDescription> parameter_registry();
 
 /// Returns the parameters whose values differ between `a` and `b`, in the order of the registry.

@@ -1,5 +1,7 @@
 #include "server/parameters/warnings.h"
 
+#include "server/evolution/gene_layout.h"
+
 #include <optional>
 #include <utility>
 
@@ -16,9 +18,10 @@ std::string text_of(const Parameters& parameters, std::string_view name) {
 }
 
 bool can_mutate(const Parameters& p) {
-    const bool has_step = p.mutation_step > 0 ||
-                          (p.controller == evolution::Controller::Network && p.brain_mutation_step > 0) ||
-                          (p.free_genes > 0 && p.free_mutation_step > 0);
+    const auto has_genes = [&](evolution::GeneGroup group) { return evolution::genes_of(group, p).count > 0; };
+    const bool has_step = (has_genes(evolution::GeneGroup::Body) && p.mutation_step > 0) ||
+                          (has_genes(evolution::GeneGroup::Brain) && p.brain_mutation_step > 0) ||
+                          (has_genes(evolution::GeneGroup::Free) && p.free_mutation_step > 0);
     return (p.mutation_chance > 0 && has_step) || p.reset_chance > 0 || (p.scale_chance > 0 && p.scale_range > 0) ||
            p.bit_flip_chance > 0 || (p.rearranging != evolution::OrderMutationMethod::None && p.rearrange_chance > 0);
 }
@@ -113,7 +116,9 @@ std::vector<std::string> warnings_of(const Parameters& parameters) {
     if (auto warning = no_selection(parameters)) {
         warnings.push_back(*std::move(warning));
     }
-    add_founders_at_a_bound(parameters, warnings);
+    if (evolution::has_body_genes(parameters)) {
+        add_founders_at_a_bound(parameters, warnings);
+    }
     return warnings;
 }
 

@@ -22,7 +22,7 @@ std::vector<std::string> population_columns(std::span<const std::string> gene_na
 
 /// The names of the genes that the world of a run has.
 std::vector<std::string> gene_names_of(const parameters::Parameters& parameters);
-/// The names of the body genes, which all worlds have.
+/// The names of the body genes, which every world has whose fitness no client computes.
 std::vector<std::string> body_gene_names();
 
 } // namespace evod::replay

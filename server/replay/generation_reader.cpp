@@ -1,5 +1,6 @@
 #include "server/replay/generation_reader.h"
 
+#include "server/replay/columns.h"
 #include "server/replay/mismatch.h"
 
 #include <utility>
@@ -142,7 +143,8 @@ Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
         }
     }
     whole.ended = run_file::end_of(world);
-    if (const auto mismatch = compare(*statistics, whole.ended->statistics)) {
+    if (const auto mismatch =
+            compare(*statistics, whole.ended->statistics, gene_names_of(file_.identity().parameters))) {
         return damaged(generation, "has other statistics when it is simulated again: " + mismatch->part + ": stored " +
                                        mismatch->stored + ", simulated again " + mismatch->simulated);
     }

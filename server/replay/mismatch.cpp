@@ -1,6 +1,7 @@
 #include "server/replay/mismatch.h"
 
 #include "proto/text/number_text.h"
+#include "server/replay/columns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,13 +58,18 @@ std::string text_of(const base::StateHash& hash) {
     return to_text(hash);
 }
 
-/// Returns names for this number of genes; messages name the genes that are not body genes by their index.
-std::vector<std::string> names_of(std::size_t gene_count) {
-    std::vector<std::string> names{evolution::body_gene_names.begin(), evolution::body_gene_names.end()};
-    for (std::size_t gene = names.size(); gene < gene_count; ++gene) {
-        names.push_back("gene " + std::to_string(gene));
+using GeneNames = std::span<const std::string>;
+
+/// Returns the name of a gene; its index if the name is unknown.
+std::string name_of(GeneNames names, std::size_t gene) {
+    return gene < names.size() ? names[gene] : std::to_string(gene);
+}
+std::vector<std::string> names_of(std::size_t gene_count, GeneNames names) {
+    std::vector<std::string> all;
+    for (std::size_t gene = 0; gene < gene_count; ++gene) {
+        all.push_back(gene < names.size() ? names[gene] : "gene " + std::to_string(gene));
     }
-    return names;
+    return all;
 }
 
 template <class T>
@@ -120,11 +126,11 @@ bool agree(std::optional<double> a, std::optional<double> b) {
 /// A missing stored account is unknown and counts as equal.
 Found compare_account(const std::string& name, const std::string& of_island,
                       const std::optional<evolution::SelectionAccount>& stored,
-                      const std::optional<evolution::SelectionAccount>& simulated) {
+                      const std::optional<evolution::SelectionAccount>& simulated, GeneNames gene_names) {
     if (!stored) {
         return std::nullopt;
     }
-    const std::vector<std::string> names = names_of(stored->size());
+    const std::vector<std::string> names = names_of(stored->size(), gene_names);
     if (simulated && simulated->size() != stored->size()) {
         return compare_part(name + "the number of genes" + of_island, std::uint64_t{stored->size()},
                             std::uint64_t{simulated->size()});
@@ -144,7 +150,8 @@ Found compare_account(const std::string& name, const std::string& of_island,
     return mismatch;
 }
 
-Found compare_island(const std::string& of_island, const NextGeneration& stored, const NextGeneration& simulated) {
+Found compare_island(const std::string& of_island, const NextGeneration& stored, const NextGeneration& simulated,
+                     GeneNames gene_names) {
     const auto genes_of = [](const NextGeneration& born) {
         return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
     };
@@ -160,7 +167,7 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
     if (const auto [one, other] = std::ranges::mismatch(stored_genes, simulated_genes); one != stored_genes.end()) {
         const auto place = static_cast<std::size_t>(one - stored_genes.begin());
         const auto gene_count = static_cast<std::size_t>(stored.genes.rows());
-        return compare_part("the chromosomes: gene " + names_of(gene_count)[place % gene_count] + " of organism " +
+        return compare_part("the chromosomes: gene " + name_of(gene_names, place % gene_count) + " of organism " +
                                 std::to_string(place / gene_count) + of_island,
                             double{*one}, double{*other});
     }
@@ -180,7 +187,7 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
                                      simulated.clamped_count)) {
         return mismatch;
     }
-    return compare_account("the selection account: ", of_island, stored.account, simulated.account);
+    return compare_account("the selection account: ", of_island, stored.account, simulated.account, gene_names);
 }
 
 Found compare_island(const std::string& of_island, const std::vector<std::uint32_t>& stored,
@@ -217,12 +224,12 @@ Found compare_island(const std::string& of_island, const run_file::IslandOutcome
 }
 
 Found compare_island(const std::string& of_island, const simulation::GenerationStatistics& stored,
-                     const simulation::GenerationStatistics& simulated) {
+                     const simulation::GenerationStatistics& simulated, GeneNames gene_names) {
     if (auto mismatch = compare_part("the statistics: the number of genes" + of_island, stored.genes.size(),
                                      simulated.genes.size())) {
         return mismatch;
     }
-    const std::vector<std::string> names = names_of(stored.genes.size());
+    const std::vector<std::string> names = names_of(stored.genes.size(), gene_names);
     const auto for_each_number = [&](const auto& statistics, const auto& visit) {
         simulation::for_each_number(statistics, visit);
         simulation::for_each_gene_number(statistics, names, visit);
@@ -238,7 +245,8 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
         }
         ++simulated_text;
     });
-    return mismatch ? mismatch : compare_account("the statistics: ", of_island, stored.account, simulated.account);
+    return mismatch ? mismatch
+                    : compare_account("the statistics: ", of_island, stored.account, simulated.account, gene_names);
 }
 
 Found compare_island(const std::string& of_island, const IslandState& stored, const IslandState& simulated) {
@@ -292,13 +300,15 @@ Found compare_island(const std::string& of_island, const IslandState& stored, co
     return Mismatch{"the counts" + of_island, text_of(stored.counts), text_of(simulated.counts)};
 }
 
-template <class T>
-Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simulated) {
+/// gene_names  for compare_island(), if it needs them.
+template <class T, class... Names>
+Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simulated, Names... gene_names) {
     if (auto mismatch = compare_part("the number of islands", stored.size(), simulated.size())) {
         return mismatch;
     }
     for (std::size_t island = 0; island < stored.size(); ++island) {
-        if (auto mismatch = compare_island(" on island " + std::to_string(island), stored[island], simulated[island])) {
+        if (auto mismatch = compare_island(" on island " + std::to_string(island), stored[island], simulated[island],
+                                           gene_names...)) {
             return mismatch;
         }
     }
@@ -349,8 +359,9 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
                         new_progress.last_died_out);
 }
 
-Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated) {
-    return compare_islands(stored, simulated);
+Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated,
+              GeneNames gene_names) {
+    return compare_islands(stored, simulated, gene_names);
 }
 
 Found compare(const simulation::Founders& stored, const simulation::Founders& simulated) {
@@ -363,8 +374,8 @@ Found compare(const std::vector<run_file::IslandOutcome>& stored,
 }
 
 Found compare(const std::vector<simulation::GenerationStatistics>& stored,
-              const std::vector<simulation::GenerationStatistics>& simulated) {
-    return compare_islands(stored, simulated);
+              const std::vector<simulation::GenerationStatistics>& simulated, GeneNames gene_names) {
+    return compare_islands(stored, simulated, gene_names);
 }
 
 Found compare(const simulation::WorldState& stored, const simulation::WorldState& simulated) {
@@ -392,7 +403,8 @@ Found compare(const simulation::WorldState& stored, const simulation::WorldState
     if (auto mismatch = compare_islands(stored.islands, simulated.islands)) {
         return mismatch;
     }
-    if (auto mismatch = compare_islands(stored.ended, simulated.ended)) {
+    const std::vector<std::string> gene_names = gene_names_of(stored.parameters.active);
+    if (auto mismatch = compare_islands(stored.ended, simulated.ended, GeneNames{gene_names})) {
         return mismatch;
     }
     return compare_islands(stored.ratings, simulated.ratings);

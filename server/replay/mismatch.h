@@ -4,6 +4,7 @@
 #include "server/run_file/records.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,17 @@ struct Mismatch {
 
 std::optional<Mismatch> compare(const simulation::Opening& stored, const simulation::Opening& simulated);
 // Both vectors have one entry per island.
+//
+// gene_names  the names of the genes, in chromosome order; a gene beyond them is named by its index.
 std::optional<Mismatch> compare(const std::vector<evolution::NextGeneration>& stored,
-                                const std::vector<evolution::NextGeneration>& simulated);
+                                const std::vector<evolution::NextGeneration>& simulated,
+                                std::span<const std::string> gene_names = {});
 std::optional<Mismatch> compare(const simulation::Founders& stored, const simulation::Founders& simulated);
 std::optional<Mismatch> compare(const std::vector<run_file::IslandOutcome>& stored,
                                 const std::vector<run_file::IslandOutcome>& simulated);
 std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatistics>& stored,
-                                const std::vector<simulation::GenerationStatistics>& simulated);
+                                const std::vector<simulation::GenerationStatistics>& simulated,
+                                std::span<const std::string> gene_names = {});
 std::optional<Mismatch> compare(const base::StateHash& stored, const base::StateHash& simulated);
 std::optional<Mismatch> compare(const simulation::WorldState& stored, const simulation::WorldState& simulated);
 /// Compares requested parameters.

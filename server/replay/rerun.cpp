@@ -89,9 +89,8 @@ bool are_possible(const evolution::GeneMatrix& genes, parameters::Parameters par
     if (genes.cols() != static_cast<Eigen::Index>(parameters.population_size)) {
         return false;
     }
-    constexpr float greatest = 1e12f; // no parameter and no list of free genes allows a gene beyond it
-    if (!(genes.array().abs() <= greatest).all() || !(genes.topRows(evolution::body_gene_count).array() >= 0).all() ||
-        !(genes.row(evolution::BodySize).array() > 0).all()) { // a NaN fails each comparison
+    constexpr float greatest = 1e12f;               // no parameter and no list of free genes allows a gene beyond it
+    if (!(genes.array().abs() <= greatest).all()) { // a NaN fails each comparison
         return false;
     }
     const evolution::FreeGeneOperators listed{parameters};
@@ -99,6 +98,13 @@ bool are_possible(const evolution::GeneMatrix& genes, parameters::Parameters par
         if (listed.first_fault(evolution::column(genes, organism))) {
             return false;
         }
+    }
+    if (!evolution::has_body_genes(parameters)) {
+        return true;
+    }
+    if (!(genes.topRows(evolution::body_gene_count).array() >= 0).all() ||
+        !(genes.row(evolution::BodySize).array() > 0).all()) {
+        return false;
     }
     const auto widest = static_cast<double>(genes.row(evolution::BodySize).maxCoeff());
     parameters.body_size_max = std::max(parameters.body_size_max, widest);

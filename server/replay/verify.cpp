@@ -1,6 +1,7 @@
 #include "server/replay/verify.h"
 
 #include "server/base/inline_executor.h"
+#include "server/replay/columns.h"
 #include "server/replay/mismatch.h"
 #include "server/replay/rerun.h"
 #include "server/run_file/check.h"
@@ -103,7 +104,7 @@ class StretchCheck {
     }
     bool check_births(const StoredMoment& moment, const StoredGeneration& stored,
                       const run_file::GenerationBegun& simulated) {
-        return same(moment, compare(stored.born, simulated.born)) &&
+        return same(moment, compare(stored.born, simulated.born, gene_names_)) &&
                (stored.founders.empty() || same(moment, compare(stored.founders, simulated.founders)));
     }
     void agrees_with_beginning_of(const StoredGeneration& generation) {
@@ -249,7 +250,7 @@ class StretchCheck {
         if (!stored.outcomes.empty() && !same(now, compare(stored.outcomes, again.outcomes))) {
             return;
         }
-        if (!same(now, compare(stored.statistics, again.statistics))) {
+        if (!same(now, compare(stored.statistics, again.statistics, gene_names_))) {
             return;
         }
         agrees_ = now;
@@ -270,6 +271,7 @@ class StretchCheck {
     }
 
     const run_file::RunFile& file_;
+    const std::vector<std::string> gene_names_ = gene_names_of(file_.identity().parameters);
     const Stretch& stretch_;
     const StoredGeneration* following_;
     base::Executor& executor_;

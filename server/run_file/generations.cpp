@@ -24,35 +24,45 @@ std::string more_genes_text(std::uint64_t generation) {
 }
 
 /// Returns the row for the genes that are not body genes.
-MoreGenesTable::Row more_genes_row(std::uint64_t generation, std::uint64_t island,
+///
+/// first  the first of these genes.
+MoreGenesTable::Row more_genes_row(std::uint64_t generation, std::uint64_t island, std::size_t first,
                                    const std::vector<simulation::GeneStatistics>& statistics,
                                    const std::optional<evolution::SelectionAccount>& account) {
     MoreGenesTable::Row row{.generation = generation, .island = island, .statistics = {}, .account = {}};
-    for (std::size_t gene = evolution::body_gene_count; gene < statistics.size(); ++gene) {
+    for (std::size_t gene = first; gene < statistics.size(); ++gene) {
         const simulation::GeneStatistics& of = statistics[gene];
         row.statistics.insert(row.statistics.end(), {of.mean, of.deviation, of.min, of.max});
     }
-    for (std::size_t gene = evolution::body_gene_count; account && gene < account->size(); ++gene) {
+    for (std::size_t gene = first; account && gene < account->size(); ++gene) {
         const evolution::GeneAccount& of = (*account)[gene];
         row.account.insert(row.account.end(), {of.selection, of.transmission, of.migration, of.change});
     }
     return row;
 }
 
-/// Adds the genes of a row to those of the body. Returns false if the result has not `gene_count` genes.
-bool add_account(const MoreGenesTable::Row& row, std::size_t gene_count,
+/// Adds the genes of a row to those of the body. Returns false if the result has not the number of genes of the
+/// parameters.
+bool add_account(const MoreGenesTable::Row& row, const parameters::Parameters& parameters,
                  std::optional<evolution::SelectionAccount>& account) {
+    if (!evolution::has_body_genes(parameters) && !row.account.empty()) {
+        account.emplace();
+    }
     for (std::size_t i = 0; account && i + 3 < row.account.size(); i += 4) {
         account->push_back({row.account[i], row.account[i + 1], row.account[i + 2], row.account[i + 3]});
     }
-    return row.account.size() % 4 == 0 && (account ? account->size() == gene_count : row.account.empty());
+    return row.account.size() % 4 == 0 &&
+           (account ? account->size() == evolution::gene_count(parameters) : row.account.empty());
 }
-bool add_statistics(const MoreGenesTable::Row& row, std::size_t gene_count,
+bool add_statistics(const MoreGenesTable::Row& row, const parameters::Parameters& parameters,
                     std::vector<simulation::GeneStatistics>& genes) {
+    if (!evolution::has_body_genes(parameters)) {
+        genes.clear(); // the columns contain 0
+    }
     for (std::size_t i = 0; i + 3 < row.statistics.size(); i += 4) {
         genes.push_back({row.statistics[i], row.statistics[i + 1], row.statistics[i + 2], row.statistics[i + 3]});
     }
-    return row.statistics.size() % 4 == 0 && genes.size() == gene_count;
+    return row.statistics.size() % 4 == 0 && genes.size() == evolution::gene_count(parameters);
 }
 
 constexpr const char* of_generation = "generation = ? ORDER BY island";
@@ -101,6 +111,19 @@ Generations::Writers& Generations::writers() {
 
 std::size_t Generations::gene_count() const {
     return evolution::gene_count(identity_.parameters);
+}
+
+void Generations::write_account(std::uint64_t generation, std::uint64_t island,
+                                const std::optional<evolution::SelectionAccount>& account) {
+    const bool in_columns = evolution::has_body_genes(identity_.parameters);
+    writers().account.write(SelectionAccountTable::Row{generation, island, in_columns ? account : std::nullopt});
+}
+
+simulation::GenerationStatistics Generations::in_columns(simulation::GenerationStatistics statistics) const {
+    if (!evolution::has_body_genes(identity_.parameters)) {
+        statistics.genes.assign(evolution::body_gene_count, {});
+    }
+    return statistics;
 }
 
 std::uint64_t Generations::at_tick(std::uint64_t tick) {
@@ -200,7 +223,7 @@ Result<Generations::Accounts> Generations::accounts_of(std::uint64_t generation,
             return more.error();
         }
         for (std::size_t island = 0; island < island_count; ++island) {
-            if (!add_account((*more)[island], gene_count(), islands[island])) {
+            if (!add_account((*more)[island], identity_.parameters, islands[island])) {
                 return database_.damaged(more_genes_text(generation));
             }
         }
@@ -336,7 +359,7 @@ Result<std::vector<simulation::GenerationStatistics>> Generations::statistics_of
             return more.error();
         }
         for (std::size_t i = 0; i < statistics.size(); ++i) {
-            if (!add_statistics((*more)[i], gene_count(), statistics[i].genes)) {
+            if (!add_statistics((*more)[i], identity_.parameters, statistics[i].genes)) {
                 return database_.damaged(more_genes_text(generation));
             }
         }
@@ -397,8 +420,8 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
         if (more_genes) {
             MoreGenesTable::Row row;
             if (!more_genes->next(row) || !more_genes->sound() || row.generation != expected ||
-                row.island != statistics.island || !add_statistics(row, gene_count(), rows.back().genes) ||
-                !add_account(row, gene_count(), rows.back().account)) {
+                row.island != statistics.island || !add_statistics(row, identity_.parameters, rows.back().genes) ||
+                !add_account(row, identity_.parameters, rows.back().account)) {
                 return database_.damaged(more_genes_text(expected));
             }
         }
@@ -413,7 +436,9 @@ void Generations::write_more_genes(std::uint64_t generation, std::uint64_t islan
                                    const std::vector<simulation::GeneStatistics>& statistics,
                                    const std::optional<evolution::SelectionAccount>& account) {
     if (writers().more_genes) {
-        writers().more_genes->write(more_genes_row(generation, island, statistics, account));
+        writers().more_genes->write(more_genes_row(
+            generation, island, evolution::genes_of(evolution::GeneGroup::Body, identity_.parameters).count, statistics,
+            account));
     }
 }
 
@@ -421,8 +446,8 @@ void Generations::write(const Inherited& inherited) {
     TableWriter<InheritedStatisticsTable> statistics{database_.database};
     for (const simulation::GenerationRows& generation : inherited.history) {
         for (const simulation::GenerationStatistics& island : generation) {
-            statistics.write(island);
-            writers().account.write(SelectionAccountTable::Row{island.generation, island.island, island.account});
+            statistics.write(in_columns(island));
+            write_account(island.generation, island.island, island.account);
             write_more_genes(island.generation, island.island, island.genes, island.account);
         }
     }
@@ -440,7 +465,7 @@ void Generations::write(const GenerationBegun& begun) {
             PopulationTable::View{generation, island, static_cast<std::uint64_t>(born.genes.cols()), born});
         writers().founders.write(
             FoundersTable::View{generation, island, begun.founders.empty() ? unknown : begun.founders[island]});
-        writers().account.write(SelectionAccountTable::Row{generation, island, born.account});
+        write_account(generation, island, born.account);
         write_more_genes(generation, island, {}, born.account);
     }
     // The previous generation was retained only while it was the newest.
@@ -465,7 +490,7 @@ void Generations::write(const GenerationEnded& ended) {
         }
     }
     for (const simulation::GenerationStatistics& statistics : ended.statistics) {
-        writers().statistics.write(statistics);
+        writers().statistics.write(in_columns(statistics));
         write_more_genes(ended.generation, statistics.island, statistics.genes, statistics.account);
     }
 }

@@ -66,6 +66,10 @@ class Generations {
     /// Adds what the table `rating` contains; false: the file is damaged.
     bool add_ratings(GenerationEnded& ended);
     base::Result<std::vector<MoreGenesTable::Row>> more_genes_of(std::uint64_t generation, std::size_t island_count);
+    void write_account(std::uint64_t generation, std::uint64_t island,
+                       const std::optional<evolution::SelectionAccount>& account);
+    /// Returns the statistics as their columns contain them: 0 for the genes of the body if the run has none.
+    simulation::GenerationStatistics in_columns(simulation::GenerationStatistics statistics) const;
     void write_more_genes(std::uint64_t generation, std::uint64_t island,
                           const std::vector<simulation::GeneStatistics>& statistics,
                           const std::optional<evolution::SelectionAccount>& account);

@@ -19,8 +19,12 @@ class ParameterSets {
     ///
     /// returns  the number of the set in the table.
     std::int64_t number_of(const parameters::ParameterSet& set);
+    /// Replaces the limit in all sets of the file.
+    base::Result<void> set_generation_limit(std::uint32_t limit);
 
   private:
+    void write(std::int64_t number, const parameters::ParameterSet& set);
+
     struct Numbered {
         std::int64_t number;
         parameters::ParameterSet set;

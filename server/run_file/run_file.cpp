@@ -247,6 +247,12 @@ void RunFile::put(EndMark mark) {
     TableWriter<EndMarkTable>{database_.database}.write(EndMarkTable::Row{1, mark.ended ? "ended" : "closed", mark});
 }
 
+Result<void> RunFile::set_generation_limit(std::uint32_t limit) {
+    identity_.run.parameters.generation_limit = limit;
+    write_identity(database_, identity_);
+    return parameter_sets_.set_generation_limit(limit);
+}
+
 Result<void> RunFile::commit() {
     return database_.commit();
 }

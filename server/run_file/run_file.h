@@ -73,6 +73,9 @@ class RunFile : public RunContents {
     /// Writes a record. If it is an end mark, this function counts the rows of the file and ignores the counts in the
     /// record.
     void write(const Record& record);
+    /// Replaces the parameter generation_limit of the run, as if it had begun with this limit. Only between begin() and
+    /// commit(), and only for a run that is not a fork, has no schedule for this parameter, and had no commands.
+    base::Result<void> set_generation_limit(std::uint32_t limit);
     /// Commits the transaction that begin() has started. After a refusal, it is unknown whether the file contains the
     /// records since begin().
     base::Result<void> commit();

@@ -94,7 +94,8 @@ Result<void> check_tables(RunDatabase& database) {
 } // namespace
 
 bool has_more_genes(const parameters::Parameters& parameters) {
-    return evolution::gene_count(parameters) > evolution::body_gene_count;
+    return evolution::genes_of(evolution::GeneGroup::All, parameters) !=
+           evolution::genes_of(evolution::GeneGroup::Body, parameters);
 }
 
 bool has_ratings(RunDatabase& database) {

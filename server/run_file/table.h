@@ -251,8 +251,7 @@ class GetColumns {
     }
     static bool read_genes(evolution::GeneMatrix& to, std::uint64_t organism_count, const std::string& bytes) {
         const std::size_t numbers = bytes.size() / sizeof(float);
-        if (organism_count == 0 || bytes.size() % sizeof(float) != 0 || numbers % organism_count != 0 ||
-            numbers / organism_count < evolution::body_gene_count) {
+        if (organism_count == 0 || bytes.size() % sizeof(float) != 0 || numbers % organism_count != 0 || numbers == 0) {
             to.resize(evolution::body_gene_count, 0);
             return bytes.empty();
         }

@@ -150,7 +150,11 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
     s.island = island.index();
     s.organism_count = static_cast<std::uint32_t>(fitness.size());
 
-    const Population population{fitness, island.born().genes, executor};
+    const evolution::GeneMatrix& genes = island.born().genes;
+    const auto gene_count = static_cast<std::size_t>(genes.rows());
+    const bool is_short = gene_count < block_genes;
+    const evolution::GeneMatrix longer = is_short ? evolution::with_a_block(genes) : evolution::GeneMatrix{};
+    const Population population{fitness, is_short ? longer : genes, executor};
     const Sums mean = population.sums<1>(Sums{population.gene_count()}).over(fitness.size());
     const Sums variance = population.sums<2>(mean).over(fitness.size());
     const Extremes extremes = population.extremes();
@@ -162,7 +166,6 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
     s.fitness_deviation = std::sqrt(variance.fitness);
 
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
-    const std::size_t gene_count = population.gene_count();
     s.genes.resize(gene_count);
     for (std::size_t gene = 0; gene < gene_count; ++gene) {
         s.genes[gene] = {.mean = mean.genes[gene],

@@ -100,7 +100,7 @@ class Evaluate(unittest.TestCase):
             history = world.evaluate(rastrigin, generations=300)
             self.assertLess(history[0].best, -80)
             self.assertGreater(history[-1].best, -0.05)  # above every local maximum but the greatest
-            self.assertLess(numpy.abs(history[-1].genes[6:]).max(), 1)
+            self.assertLess(numpy.abs(history[-1].genes).max(), 1)
             verify(self.data.name, f"rastrigin{seed}")
 
     def test_the_shortest_tour_of_20_cities_is_found(self):
@@ -154,6 +154,44 @@ class Evaluate(unittest.TestCase):
             with self.assertRaises(evod.InvalidArgument):
                 self.lab.create_world("six", {"population_size": 12}, population=run.genes(3))
 
+    def test_optimisers_have_their_free_genes_alone(self):
+        setting = {**FREE, "free_genes": 2, "mutate_group": "all", "mutation_chance": 0, "crossover": "single_point",
+                   "population_size": 200, "elite_count": 0, "population_model": "generational"}
+        world = self.lab.create_world("alone", setting, seed=3)
+        shapes = []
+
+        def fitness(genes, life):
+            shapes.append(genes.shape)
+            return genes[:, :3] @ numpy.ones(2)
+
+        names = ("free0", "free1")
+        self.assertEqual(world.info().gene_names, names)
+        ended = world.evaluate(fitness, generations=3)
+        self.assertEqual(shapes, [(200, 2)] * 3)
+        self.assertAlmostEqual(ended[0].diversity, 12 ** -0.5, delta=0.02)  # of uniform numbers
+        self.assertEqual(ended[2].genes.names, names)
+        self.assertAlmostEqual(float(ended[2].change["free1"]), ended[2].genes["free1"] - ended[1].genes["free1"])
+        breeding = world.breeding(generation=1)
+        mixed = [child for child in breeding.descendants if set(child.genes) - set(child.first_genes)]
+        self.assertGreater(len(mixed), 150)  # the only cut point is between the two genes
+        table = world.table("generations")
+        self.assertNotIn("body_size_mean", table.columns)
+        with evod.open_run(f"{self.data.name}/alone.evod") as run:
+            self.assertEqual(run.gene_names, names)
+            pandas.testing.assert_frame_equal(run.generations(), table, check_dtype=False, check_exact=True)
+            self.assertEqual(run.organisms()["free1"].dtype, numpy.float32)
+            self.assertEqual(world.table("population").dtypes["free1"], numpy.float32)
+            copy = self.lab.create_world("alone2", setting, population=run.genes(3))
+            self.assertTrue((copy.population().genes == run.genes(3)[0]).all())
+        best = world.best()
+        self.assertEqual(best.genes.names, names)
+        verify(self.data.name, "alone")
+        six = self.lab.create_world("six free", {**setting, "free_genes": 6}, seed=1)
+        self.assertEqual(six.evaluate(lambda genes, life: genes["free5"], 2)[-1].genes.names[0], "free0")
+        self.assertEqual(six.population().genes.names[5], "free5")
+        bodies = self.lab.create_world("body genes", {**setting, "free_genes": 0}, seed=1)
+        self.assertEqual(bodies.info().gene_names, evod.GENE_NAMES)
+
     def test_genes_of_a_list_keep_to_their_values(self):
         genes = [evod.genes.Real("rate", 0.001, 1, scale="logarithmic"), evod.genes.Integer("layers", 1, 8),
                  evod.genes.Choice("material", ["steel", "wood", "clay"]), evod.genes.Permutation("tour", 5),
@@ -175,10 +213,10 @@ class Evaluate(unittest.TestCase):
         world.evaluate(fitness, generations=60)
         best = world.history()[-1]
         self.assertGreater(best.best, -2.5)
-        self.assertEqual(list(world.info().gene_names[6:]),
+        self.assertEqual(list(world.info().gene_names),
                          ["rate", "layers", "material", "tour0", "tour1", "tour2", "tour3", "tour4", "angle"])
         world.reset(free_genes=[evod.genes.Integer("bits", 0, 1)])
-        self.assertEqual(list(world.info().gene_names[6:]), ["bits"])
+        self.assertEqual(list(world.info().gene_names), ["bits"])
         with self.assertRaisesRegex(evod.InvalidArgument, r"free_genes\[0\].max.*16777216"):
             self.lab.create_world("wrong", {"fitness": "external",
                                             "free_genes": [evod.genes.Integer("n", 0, 20_000_000)]})

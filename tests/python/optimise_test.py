@@ -34,7 +34,7 @@ class Optimise(unittest.TestCase):
 
     # ---- watching ---------------------------------------------------------------------------------------------------
 
-    def test_a_for_statement_over_the_call_is_live(self):
+    def test_a_live_call_yields_while_it_rates(self):
         seen = []
 
         def rated(genes, life):
@@ -42,19 +42,19 @@ class Optimise(unittest.TestCase):
             return first_gene(genes, life)
 
         world = self.world()
-        for generation in world.evaluate(rated, generations=2):
+        for generation in world.evaluate(rated, generations=2, live=True):
             seen.append(("ended", generation.number))
         self.assertEqual(seen, [("rated", 1), ("ended", 1), ("rated", 2), ("ended", 2)])
         best = [generation.best for generation in world.evaluate(rated, generations=2)]
         self.assertEqual(len(best), 2)
-        for generation in world.evaluate(rated, generations=100):
+        for generation in world.evaluate(rated, generations=100, live=True):
             if generation.number == 6:
                 break
         self.assertEqual(world.history()[-1].number, 6)
         self.assertEqual([g.number for g in world.evaluate(rated, generations=2)], [7, 8])
 
     def test_a_with_statement_keeps_the_result(self):
-        with self.world().evaluate(first_gene, generations=100) as search:
+        with self.world().evaluate(first_gene, generations=100, live=True) as search:
             self.assertEqual(len(search), 0)
             for generation in search:
                 self.assertIs(search[-1], generation)
@@ -82,10 +82,10 @@ class Optimise(unittest.TestCase):
                 async def called(generation):
                     seen.append(generation.number)
 
-                async for generation in world.evaluate(first_gene, generations=2, on_generation=called):
+                async for generation in world.evaluate(first_gene, generations=2, on_generation=called, live=True):
                     self.assertEqual(seen[-1], generation.number)
                 whole = await world.evaluate(first_gene, generations=2, on_generation=called)
-                async with world.evaluate(first_gene, stagnation=5) as search:
+                async with world.evaluate(first_gene, stagnation=5, live=True) as search:
                     async for _ in search:
                         pass
                 with self.assertRaisesRegex(evod.FailedPrecondition, "await world.best"):

@@ -121,6 +121,15 @@ class Run(Recorded):
         self.assertEqual(self.csv.read_bytes(), self.plain_csv.read_bytes())
         self.assertEqual(self.plain_file.read_bytes(), before)
 
+    def test_more_generations_continue_a_finished_run(self):
+        evod("run", self.ring, "--generations", 5, "--run-file", self.file)
+        done = evod("run", self.ring, "--run-file", self.file, "--csv", self.csv)
+        self.assertIn("continues at generation 5\n", done.stdout)
+        self.assertEqual(state(done), state(self.plain))
+        self.expect_whole()
+        self.assertIn("its generation_limit is 12, not 11",
+                      evod("run", self.ring, "--generations", 11, "--run-file", self.file, status=1).stderr)
+
     def test_a_seed_that_was_drawn_is_kept(self):
         words = ["run", "--set", "population_size=10", "--set", "generation_s=1", "--generations", "400", "--run-file",
                  self.file]

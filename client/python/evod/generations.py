@@ -27,7 +27,7 @@ def account_part(gene: GeneStatistics, part: str) -> float:
 class Solution:
     """An organism and its fitness, returned by `History.best`, `History.hall_of_fame` and `World.best`."""
 
-    genes: Genes  #: shape (genes,): genes["free0"]; of a world without bodies only its free genes
+    genes: Genes  #: shape (genes,): genes["free0"]
     fitness: float
     generation: int
     island: int
@@ -356,9 +356,9 @@ class Population:
         return pandas().DataFrame(columns | self.genes.to_dict())
 
 
-def gene_count_of(part: commands_pb2.Population) -> int:
-    """The number of genes of the organisms; 6 if there are none."""
-    return len(part.genes) // 4 // part.count if part.count else len(GENE_NAMES)
+def gene_count_of(part: commands_pb2.Population) -> int | None:
+    """The number of genes of the organisms; None if there are no organisms."""
+    return len(part.genes) // 4 // part.count if part.count else None
 
 
 def population_of(parts: Sequence[commands_pb2.Population], island: int, gene_names: Sequence[str]) -> Population:

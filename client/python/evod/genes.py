@@ -64,6 +64,7 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
     """An array of genes, shape (genes,) or (count, genes), that can also be indexed with the name of a gene.
 
     A chromosome has the six genes of the body, `evod.GENE_NAMES`; the weights of a network and free genes may follow.
+    Without bodies, it consists of the free genes if there are any.
 
     Rows of a Genes array are Genes arrays. Results of calculations are arrays without names.
 

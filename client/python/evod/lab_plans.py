@@ -157,9 +157,8 @@ class LabPlans:
         ids: EntityIds = result(response.removed)
         return ids
 
-    def rated_genes(self, world: str) -> Plan[tuple[Sequence[str] | None, bool, int]]:
-        """Returns the names of the genes that a fitness function gets, None for all; whether the world has bodies; and
-        how many numbers rate an organism.
+    def rated_world(self, world: str) -> Plan[tuple[bool, int]]:
+        """Returns whether the organisms of a world that clients rate live on islands, and how many numbers rate each.
 
         Raises FailedPrecondition if the world computes its fitness itself.
         """
@@ -171,16 +170,13 @@ class LabPlans:
                 "or create a world with fitness external",
                 [Violation("fitness", "external", str(parameters.fitness))],
             )
-        info = yield from world_info(world)
-        names = _rated_names(info, parameters)
-        visible = None if len(names) == len(info.gene_names) else names
-        return visible, bool(parameters.external_bodies), int(parameters.objectives)
+        return bool(parameters.external_bodies), int(parameters.objectives)
 
     def hall_of_fame(
         self, world: str, k: int, first: int | None, last: int | None, island: int | None, minimize: bool
     ) -> Plan[list[Solution]]:
         """Returns the k best organisms of ended generations, best first."""
-        names = _rated_names((yield from world_info(world)), (yield from self.parameters(world)))
+        names = (yield from world_info(world)).gene_names
         return (yield from solutions.hall_of_fame(world, names, k, first, last, island, minimize))
 
     def set_fitness(
@@ -334,13 +330,6 @@ class LabPlans:
             return (yield from stream.next())
         finally:
             stream.close()
-
-
-def _rated_names(info: world_pb2.WorldInfo, parameters: Parameters) -> list[str]:
-    """The genes that count for the fitness: without bodies the free genes, if there are any; otherwise all."""
-    free = [name for name, group in zip(info.gene_names, info.gene_groups) if group == world_pb2.GENE_GROUP_FREE]
-    has_bodies = parameters.fitness != "external" or parameters.external_bodies
-    return free if free and not has_bodies else list(info.gene_names)
 
 
 def _gene_names_in(population: Sequence[numpy.typing.ArrayLike] | None) -> Sequence[str]:

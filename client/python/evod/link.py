@@ -28,6 +28,11 @@ def blocking_call(function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs
     return function(*args, **kwargs)
 
 
+def call_back(function: Callable[P, object], /, *args: P.args, **kwargs: P.kwargs) -> None:
+    """Calls a function. evod.aio.link has the corresponding function for an event loop."""
+    function(*args, **kwargs)
+
+
 class Link:
     """The synchronous version of evod.aio.link.Link. Every method blocks until it has a result."""
 

@@ -357,7 +357,7 @@ def history(world: str, first: int | None, last: int | None, island: int | None)
         answer = response.history
         rows += answer.generations
         if not answer.HasField("next_generation"):
-            names = yield from gene_names(world, len(rows[0].genes) if rows else len(GENE_NAMES))
+            names = yield from gene_names(world, len(rows[0].genes) if rows else None)
             return History(generations_of(rows, names))
         first = answer.next_generation
 
@@ -381,12 +381,10 @@ def gene_list(genes: Sequence[Mapping[str, object]]) -> world_pb2.FreeGeneList:
     return message
 
 
-def gene_names(world: str, count: int) -> Plan[Sequence[str]]:
-    """Returns the names of the genes of a world in which organisms had `count` genes."""
-    if count == len(GENE_NAMES):
-        return GENE_NAMES
+def gene_names(world: str, count: int | None) -> Plan[Sequence[str]]:
+    """Returns the names of the genes of a world in which organisms had `count` genes; None: an unknown number."""
     names: Sequence[str] = (yield from world_info(world)).gene_names
-    if len(names) != count:
+    if count not in (None, len(names)):
         raise NotFound(f"the world '{world}' was reset while its genes were requested")
     return names
 

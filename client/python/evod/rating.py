@@ -47,21 +47,20 @@ HALL_MAX = 100  # how many of the best solutions a Rater stores
 class Rater:
     """A fitness function, with what it has returned until now.
 
-    visible    the genes that the function gets; None: all genes.
     has_bodies whether organisms live on islands; the life of a survivor then differs from generation to generation.
     minimize   whether less is better for the function; evod gets the negative numbers.
     only_new   whether the function gets only organisms whose genes it has not rated in the generation before.
     objectives how many numbers the function returns for an organism.
     """
 
-    def __init__(self, function: Fitness, visible: Sequence[str] | None, has_bodies: bool, *, minimize: bool,
-                 only_new: bool, objectives: int = 1) -> None:
+    def __init__(self, function: Fitness, has_bodies: bool, *, minimize: bool, only_new: bool,
+                 objectives: int = 1) -> None:
         if not callable(function):
             raise wrong_argument("function", "a function of genes and life", repr(function))
         if only_new and has_bodies:
             raise wrong_argument("only_new", "False in a world with bodies: survivors live again in each generation",
                                  only_new)
-        self._function, self._visible, self._only_new = function, visible, only_new
+        self._function, self._only_new = function, only_new
         self._has_bodies = has_bodies
         self.minimize = minimize
         self._objectives = objectives
@@ -81,7 +80,7 @@ class Rater:
         """
         if population.generation != self._now[0]:
             self._before, self._now, self._parts = self._now[1], (population.generation, {}), []
-        genes = genes_of(population, self._visible)
+        genes = population.genes.copy()
         keys = [row.tobytes() for row in numpy.ascontiguousarray(genes)]
         is_new = numpy.array([self._has_bodies or key not in self._before for key in keys], bool)
         life = dataclasses.replace(population.life, is_new=is_new)
@@ -98,7 +97,7 @@ class Rater:
         if repaired is not None:
             genes[rated] = repaired
             keys = [row.tobytes() for row in numpy.ascontiguousarray(genes)]
-            whole = _with_columns(population, self._visible, genes)
+            whole = numpy.asarray(genes)
         self._now[1].update(zip(keys, fitness))
         if self._objectives > 1:
             self._parts.append((genes, fitness))
@@ -196,23 +195,6 @@ class Rater:
 
     def _is_better(self, one: Solution, other: Solution) -> bool:
         return one.fitness < other.fitness if self.minimize else one.fitness > other.fitness
-
-
-def _with_columns(population: Population, visible: Sequence[str] | None, genes: Genes) -> Array:
-    """The chromosomes of a population with other values of the visible genes."""
-    whole = numpy.array(population.genes)
-    names = population.genes.names or ()
-    whole[:, slice(None) if visible is None else [names.index(name) for name in visible]] = genes
-    return whole
-
-
-def genes_of(population: Population, visible: Sequence[str] | None) -> Genes:
-    """The genes of a population that a fitness function gets: a copy."""
-    names = population.genes.names or ()
-    if visible is None:
-        return Genes(numpy.array(population.genes), names)
-    columns = [names.index(name) for name in visible]
-    return Genes(numpy.array(population.genes)[:, columns], visible)
 
 
 # ---- the end

@@ -182,7 +182,7 @@ class RunFile:
         names = [column[0] for column in cursor.description]
         table = pandas().DataFrame(self._fetch(cursor), columns=names).drop(columns="checksum")
         table = table.astype({name: float for name in body_accounts})
-        return self._with_more_genes(table) if len(self.gene_names) > len(GENE_NAMES) else table
+        return self._with_more_genes(table) if self.gene_names != GENE_NAMES else table
 
     def organisms(self) -> Any:
         """Returns all organisms of the retained generations as a DataFrame: origin, parents, genes, fitness and
@@ -312,8 +312,9 @@ class RunFile:
     # ---- private --------------------------------------------------------------------------------------------------
 
     def _with_more_genes(self, table: Any) -> Any:
-        """Adds the statistics of the genes beyond those of the body."""
-        names = self.gene_names[len(GENE_NAMES) :]
+        """Adds the statistics of the genes beyond those of the body. Removes those of the body if the run has none."""
+        has_body_genes = self.gene_names[: len(GENE_NAMES)] == GENE_NAMES
+        names = self.gene_names[len(GENE_NAMES) :] if has_body_genes else self.gene_names
         rows = self._rows(
             "SELECT more_genes.statistics, account FROM more_genes JOIN statistics USING (generation, island) "
             "ORDER BY generation, island"
@@ -332,8 +333,10 @@ class RunFile:
             for part, (values, columns) in parts.items()
         }
         first_account = table.columns.get_loc(f"{GENE_NAMES[0]}_{ACCOUNT_PARTS[0]}")
-        columns = (table.iloc[:, :first_account], more["statistics"], table.iloc[:, first_account:], more["account"])
-        return pandas().concat(columns, axis=1)
+        of_body = (table.iloc[:, :first_account], table.iloc[:, first_account:])
+        if not has_body_genes:
+            of_body = (table.iloc[:, : table.columns.get_loc(f"{GENE_NAMES[0]}_mean")], table.iloc[:, :0])
+        return pandas().concat((of_body[0], more["statistics"], of_body[1], more["account"]), axis=1)
 
     def _rows(self, query: str, *values: object) -> Iterator[tuple[Any, ...]]:
         return iter(self._fetch(self._execute(query, *values)))

@@ -8,7 +8,6 @@ from typing import Any, Iterable, Sequence
 import numpy
 
 from evod.errors import MissingPackage
-from evod.genes import GENE_NAMES
 
 
 def pandas() -> Any:
@@ -35,11 +34,13 @@ def read_csv(text: str, **options: Any) -> Any:
 
 
 def _genes_in(text: str) -> Sequence[str]:
-    """The names of the genes in a table of organisms: they end with the last column, or before the fitness."""
+    """The names of the genes in a table of organisms: they begin after the origin, or after the organism if there is no
+    origin, and end with the last column, or before the fitness."""
     columns = text[: text.find("\n")].rstrip("\r").split(",")
-    if GENE_NAMES[0] not in columns:
+    last = "origin" if "origin" in columns else "organism"
+    if last not in columns:
         return ()
-    genes = columns[columns.index(GENE_NAMES[0]) :]
+    genes = columns[columns.index(last) + 1 :]
     return genes[: genes.index("fitness")] if "fitness" in genes else genes
 
 

@@ -39,6 +39,7 @@ struct Fields<parameters::Parameters> {
     static void visit(auto& parameters, auto&& each) {
 #define EVOD_NO_VISIT(topic)
 #define EVOD_VISIT(name, ...) each(parameters.name);
+        EVOD_FITNESS_PARAMETERS(EVOD_NO_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT)
         EVOD_EVOLUTION_PARAMETERS(EVOD_NO_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT)
         EVOD_MODEL_PARAMETERS(EVOD_NO_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT, EVOD_VISIT)
 #undef EVOD_NO_VISIT

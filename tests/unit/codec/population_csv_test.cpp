@@ -55,15 +55,24 @@ TEST(PopulationCsv, FurtherGenesHaveTheirNames) {
     EXPECT_THAT(wrong(std::string{population_heading} + ",\n"), StartsWith("line 1: got"));
     EXPECT_THAT(wrong(std::string{population_heading} + ",a,a\n"), StartsWith("line 1: got"));
     EXPECT_THAT(wrong(std::string{population_heading} + ",a,,b\n"), StartsWith("line 1: got"));
-    EXPECT_THAT(wrong(std::string{population_heading} + "x\n"), StartsWith("line 1: got"));
+    EXPECT_EQ(wrong(std::string{population_heading} + "x\n"), "contains no organism");
     EXPECT_THAT(wrong(std::string{population_heading} + ",a\n0,0,1,2,3,4,5,6\n"),
                 testing::EndsWith("allowed an island, an organism and 7 genes, so 9 cells, not 8"));
+}
+
+TEST(PopulationCsv, ChromosomesMayHaveNoGenesOfTheBody) {
+    const auto population = read("organism,free1,island,free0\n0,2,0,1\n");
+    ASSERT_TRUE(population) << population.error().what;
+    EXPECT_THAT(population->gene_names, ElementsAre("free1", "free0"));
+    EXPECT_THAT(population->islands, ElementsAre(ElementsAre(2, 1)));
+    EXPECT_EQ(population_text(*population), "island,organism,free1,free0\n0,0,2,1\n");
 }
 
 TEST(PopulationCsv, ErrorsNameTheLine) {
     const std::string good = heading + "0,0,1,2,3,4,5,6\n";
     EXPECT_THAT(wrong(""), StartsWith("line 1: got \"\", allowed the heading island,"));
     EXPECT_THAT(wrong("0,0,1,2,3,4,5,6\n"), StartsWith("line 1: got \"0,0,1"));
+    EXPECT_THAT(wrong("island,organism\n0,0\n"), StartsWith("line 1: got"));
     EXPECT_EQ(wrong(heading), "contains no organism");
     for (const char* line : {"0,1,1,2,3,4,5", "0,1,1,2,3,4,5,", "0,1,1,2,3,4,5,6,7", "0,1,1,2,3,4,5,6,",
                              "0,1,1,2,x,4,5,6", "0,-1,1,2,3,4,5,6", "0,1,1,2,3,4,5,1e99"}) {

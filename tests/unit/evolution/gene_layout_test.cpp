@@ -33,5 +33,29 @@ TEST(GeneLayout, GroupsAreRangesOfAChromosome) {
     EXPECT_EQ(genes_of(GeneGroup::Free, parameters), (GeneRange{6, 10}));
 }
 
+/// A world without bodies whose organisms a client rates.
+Parameters optimiser(std::uint32_t free_genes) {
+    Parameters parameters;
+    parameters.fitness = FitnessFunction::External;
+    parameters.external_bodies = false;
+    parameters.free_genes = free_genes;
+    return parameters;
+}
+
+TEST(GeneLayout, OptimisersHaveTheirFreeGenesAlone) {
+    Parameters parameters = optimiser(2);
+    parameters.controller = Controller::Network;
+    const GeneLayout layout = gene_layout(parameters);
+    EXPECT_EQ(layout.names, (std::vector<std::string>{"free0", "free1"}));
+    EXPECT_EQ(layout.groups, (std::vector<GeneGroup>{GeneGroup::Free, GeneGroup::Free}));
+    EXPECT_EQ(layout.bounds.max.size(), 2);
+    EXPECT_EQ(gene_count(parameters), 2u);
+    EXPECT_EQ(genes_of(GeneGroup::Free, parameters), (GeneRange{0, 2}));
+    EXPECT_EQ(genes_of(GeneGroup::Body, parameters).count, 0u);
+    parameters.external_bodies = true;
+    EXPECT_EQ(genes_of(GeneGroup::Body, parameters).count, 6u);
+    EXPECT_EQ(gene_layout(optimiser(0)).names.front(), "normal_speed") << "without free genes, a client rates these";
+}
+
 } // namespace
 } // namespace evod::evolution

@@ -152,6 +152,23 @@ std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> arrivals_of(cons
     return arrivals;
 }
 
+TEST(Migration, NoEliteIsReplaced) {
+    const Islands islands{5, 4, 3};
+    for (const Replaced replaced : {Replaced::Worst, Replaced::Random}) {
+        Parameters parameters = with(Topology::FullyConnected, 4);
+        parameters.immigrants_replace = replaced;
+        parameters.elite_count = 2;
+        std::map<std::uint32_t, std::set<std::uint32_t>> places;
+        for (const Migrant& migrant : islands.migrants(parameters)) {
+            places[migrant.to].insert(migrant.replaces);
+        }
+        const std::map<std::uint32_t, std::set<std::uint32_t>> all_others{{0, {0, 1, 2}}, {1, {0, 1}}, {2, {0}}};
+        EXPECT_EQ(places, all_others);
+        parameters.elite_count = 9;
+        EXPECT_TRUE(islands.migrants(parameters).empty());
+    }
+}
+
 TEST(Migration, SharesPlacesEvenlyAmongOrigins) {
     const Islands islands{5, 7, 7, 2, 20, 0};
     const std::uint32_t populations[] = {5, 7, 7, 2, 20, 0};

@@ -131,6 +131,27 @@ TEST_F(RunRecordingTest, ContinuesWithAnotherNumberOfProcesses) {
     expect_whole();
 }
 
+TEST_F(RunRecordingTest, AHigherLimitContinuesAWholeRun) {
+    for (const int ticks : {all, 50}) { // whole, and interrupted
+        fs::remove(path);
+        experiment.parameters.generation_limit = 1;
+        simulate(1, ticks, true);
+        experiment.parameters.generation_limit = 2;
+        EXPECT_EQ((*open())->stored(), Stored::Part);
+        simulate(2, all, true);
+        EXPECT_EQ((*open())->stored(), Stored::Whole);
+        experiment.parameters.generation_limit = 0;
+        EXPECT_EQ((*open())->stored(), Stored::Part) << "no limit";
+        experiment.parameters.generation_limit = 3;
+        simulate(1, 1, false); // killed
+        simulate(1, all, true);
+        expect_whole();
+        EXPECT_EQ((*run_file::RunFile::open_read_only(path))->identity().parameters.generation_limit, 3u);
+    }
+    experiment.parameters.generation_limit = 2;
+    EXPECT_THAT(open().error().message, HasSubstr("its generation_limit is 3, not 2"));
+}
+
 TEST_F(RunRecordingTest, ReadsTheStatisticsOfEarlierGenerations) {
     simulate(1, 250, false);
     const auto run = open();

@@ -84,6 +84,7 @@ TEST(GeneList, FaultsNameTheGeneAndItsField) {
         EXPECT_THAT(violation.field, testing::StartsWith(wrong.field)) << wrong.list;
         EXPECT_THAT(violation.allowed, testing::HasSubstr(wrong.allowed)) << wrong.list;
     }
+    EXPECT_EQ(parse_gene_list(cases[4].list).error().violations.at(0).got, "\"a1\"") << "the name that clashes";
 }
 
 } // namespace

@@ -17,13 +17,22 @@ using namespace recording;
 using testing::Contains;
 using testing::HasSubstr;
 
-class StoredRatingTest : public StoredRuns, public testing::WithParamInterface<bool> {
+enum class Rated { Bodies, BodyGenes, FreeGenes };
+void PrintTo(Rated rated, std::ostream* out) {
+    *out << (rated == Rated::Bodies ? "bodies" : rated == Rated::BodyGenes ? "genes of bodies" : "free genes alone");
+}
+
+class StoredRatingTest : public StoredRuns, public testing::WithParamInterface<Rated> {
   protected:
-    /// A run of a world with two islands of twelve organisms, with or without bodies.
+    bool has_bodies() const { return GetParam() == Rated::Bodies; }
+    /// A run of a world with two islands of twelve organisms.
     std::unique_ptr<RecordedRun> begin() {
         auto run = std::make_unique<RecordedRun>(data, *thread);
         run->command(set_parameter("fitness", std::string{"external"}));
-        run->command(set_parameter("external_bodies", GetParam()));
+        run->command(set_parameter("external_bodies", has_bodies()));
+        if (GetParam() == Rated::FreeGenes) {
+            run->command(set_parameter("free_genes", 2u));
+        }
         run->reset(base::Seed{7}, {3, 4});
         return run;
     }
@@ -106,7 +115,7 @@ TEST_P(StoredRatingTest, AForkContinuesWithTheNumbers) {
         const auto recovered = recover(*file, three_threads);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         EXPECT_EQ(recovered->world.hash(), hash) << numbers;
-        EXPECT_EQ(recovered->world.awaits_fitness(), numbers < 12 || !GetParam());
+        EXPECT_EQ(recovered->world.awaits_fitness(), numbers < 12 || !has_bodies());
         expect_agrees(*file);
     }
 }
@@ -142,7 +151,7 @@ TEST_P(StoredRatingTest, AMissingNumberIsReported) {
     EXPECT_THAT(rerun->changes().fault()->message, HasSubstr("does not contain the fitness of generation 2"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Bodies, StoredRatingTest, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Bodies, StoredRatingTest, testing::Values(Rated::Bodies, Rated::BodyGenes, Rated::FreeGenes));
 
 } // namespace
 } // namespace evod::replay

@@ -64,6 +64,25 @@ class RatingTest : public testing::Test {
     base::InlineExecutor executor;
 };
 
+TEST_F(RatingTest, DiversityCountsTheGenesThatAreRated) {
+    parameters::Parameters parameters = rated_world(false);
+    parameters.free_genes = 2;
+    parameters.island_count = 1;
+    parameters.population_size = 500;
+    create(parameters);
+    advance();
+    ASSERT_TRUE(rate(0, std::vector<double>(500, 1.0)));
+    advance();
+    const GenerationStatistics& statistics = world().history().front()[0];
+    ASSERT_EQ(statistics.genes.size(), 2u);
+    EXPECT_NEAR(statistics.genes[1].mean, 0.5, 0.06);
+    EXPECT_DOUBLE_EQ(statistics.diversity, (statistics.genes[0].deviation + statistics.genes[1].deviation) / 2);
+    EXPECT_NEAR(statistics.diversity, 0.289, 0.02); // 1/√12, of uniform numbers
+    const std::optional<evolution::SelectionAccount>& account = world().island(0).born().account;
+    ASSERT_EQ(account->size(), 2u);
+    EXPECT_NEAR((*account)[1].change, world().island(0).born().genes.row(1).mean() - statistics.genes[1].mean, 1e-6);
+}
+
 TEST_F(RatingTest, AWorldWaitsUntilAllIslandsAreRated) {
     create(rated_world(false));
     advance();

@@ -11,8 +11,7 @@ import numpy
 import numpy.typing
 
 from evod import plans
-from evod.aio.link import Link, blocking_call
-from evod.aio.watched import call_back
+from evod.aio.link import Link, blocking_call, call_back
 from evod.errors import FailedPrecondition
 from evod.generations import Generation, History, Population
 from evod.objectives import Front

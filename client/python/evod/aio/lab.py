@@ -14,7 +14,6 @@ from evod.aio.awaitable import opens, opens_stream
 from evod.aio.evaluation import Evaluation
 from evod.aio.link import Link
 from evod.aio.streams import Closing, Events, Run
-from evod.aio.watched import watched
 from evod.aio.world_queries import WorldQueries
 from evod.conversion import result
 from evod.experiment import Experiment, world_values
@@ -393,7 +392,7 @@ class World(ParameterAttributes, WorldQueries):
         """
         return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
 
-    @watched
+    @opens_stream
     async def evaluate(
         self,
         function: Callable[[Genes, Life], numpy.typing.ArrayLike | Repaired],
@@ -407,6 +406,7 @@ class World(ParameterAttributes, WorldQueries):
         until: Callable[[Generation], object] | None = None,
         on_generation: Callable[[Generation], object] | None = None,
         progress: bool = False,
+        live: bool = False,
         **unknown: object,
     ) -> Evaluation:
         """Runs the world with any fitness function, and returns the ended generations.
@@ -416,16 +416,16 @@ class World(ParameterAttributes, WorldQueries):
         and evod is a genetic algorithm. The run file contains all numbers, so the run can be repeated and verified
         without the function.
 
-        A `for` statement over the call yields each generation when it has ended. ``with world.evaluate(…) as
-        evaluation:`` and a loop over `evaluation` do the same, and the result stays at hand.
+        The call ends with the last generation. With ``live=True`` it returns at once, and a `for` statement over the
+        result rates organisms and yields each generation when it has ended. ``with world.evaluate(…, live=True) as
+        evaluation:`` keeps the result at hand.
 
         Parameters
         ----------
         function
             It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and
-            returns one number for each organism, -1e100 to 1e100. Larger is better. Without bodies, the genes are the
-            free genes, if the world has any. The arrays are read-only. A function that repairs chromosomes returns an
-            `evod.Repaired`. If the world's parameter ``objectives`` is above 1, the function returns so many numbers
+            returns one number for each organism, -1e100 to 1e100. Larger is better. The arrays are read-only. A function
+            that repairs chromosomes returns an `evod.Repaired`. If the world's parameter ``objectives`` is above 1, the function returns so many numbers
             for each organism: an array of shape (count, objectives). `Generation.front` contains the best organisms
             then, and the first objective is the fitness in all other results and in the criteria below.
         generations
@@ -449,6 +449,9 @@ class World(ParameterAttributes, WorldQueries):
             A function that is called with each `Generation` when it has ended.
         progress
             Show the last generation in one line on the terminal.
+        live
+            Return before the first generation. Organisms are rated while the result is iterated; leaving the loop ends
+            the call. By default the call waits for the end, and the result yields the generations afterwards.
 
         Returns
         -------
@@ -477,10 +480,11 @@ class World(ParameterAttributes, WorldQueries):
         """
         refuse_unknown(unknown)
         rules = EndRules(target=target, stagnation=stagnation, seconds=seconds, until=until)
-        visible, has_bodies, objectives = await self._link.perform(self._plans.rated_genes(self.name))
-        rater = Rater(function, visible, has_bodies, minimize=minimize, only_new=only_new, objectives=objectives)
+        has_bodies, objectives = await self._link.perform(self._plans.rated_world(self.name))
+        rater = Rater(function, has_bodies, minimize=minimize, only_new=only_new, objectives=objectives)
         stream = await self._link.perform(self._plans.run(self.name, generations))
-        return Evaluation(self._link, stream, self, rater, rules, on_generation, progress)
+        evaluation = Evaluation(self._link, stream, self, rater, rules, on_generation, progress)
+        return evaluation if live else await evaluation.wait()
 
     async def _set_fitness(
         self, population: Population, fitness: numpy.typing.NDArray[Any], genes: numpy.typing.NDArray[Any] | None

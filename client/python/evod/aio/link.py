@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import inspect
 import os
 import socket
 import ssl
@@ -26,6 +27,13 @@ P = ParamSpec("P")
 async def blocking_call(function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:
     """Calls a blocking function on a separate thread, so that the event loop continues to run."""
     return await asyncio.to_thread(function, *args, **kwargs)
+
+
+async def call_back(function: Callable[P, object], /, *args: P.args, **kwargs: P.kwargs) -> None:
+    """Calls a function on the event loop, or awaits a coroutine function."""
+    result = function(*args, **kwargs)
+    if inspect.isawaitable(result):
+        await result
 
 
 class Link:

@@ -13,7 +13,6 @@ from evod.aio.link import Link
 from evod.aio.streams import Events, Snapshots
 from evod.conversion import result
 from evod.errors import FailedPrecondition
-from evod.genes import GENE_NAMES
 from evod.generations import History, Population, Solution
 from evod.lab_plans import LabPlans
 from evod.results import Breeding, Motion, OrganismInfo, RunState, Statistics, WorldInfo
@@ -238,7 +237,7 @@ class WorldQueries:
             first_descendant=first_descendant,
         )
         answer = response.breeding
-        gene_count = len(answer.descendants[0].genes) if answer.descendants else len(GENE_NAMES)
+        gene_count = len(answer.descendants[0].genes) if answer.descendants else None
         breeding: Breeding = result(answer, await self._link.perform(plans.gene_names(self.name, gene_count)))
         return breeding
 

@@ -51,7 +51,7 @@ export type StorageState = "STORAGE_STATE_UNSPECIFIED"|"STORAGE_STATE_KEEPS_UP"|
   "STORAGE_STATE_STALLED"|"STORAGE_STATE_BEHIND";
 
 /** What a gene is for.
- *  GENE_GROUP_BODY: the six genes that every chromosome begins with
+ *  GENE_GROUP_BODY: the six genes with which a chromosome begins that has any of this group
  *  GENE_GROUP_BRAIN: weights of the neural network that steers the organism
  *  GENE_GROUP_FREE: the simulation does not read it (parameter free_genes) */
 export type GeneGroup = "GENE_GROUP_UNSPECIFIED"|"GENE_GROUP_BODY"|"GENE_GROUP_BRAIN"|"GENE_GROUP_FREE";

@@ -4,18 +4,16 @@
 //   island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius
 //   0,0,103.2,97.5,…
 //
-// The columns of further genes follow. Islands and organisms are numbered from 0, in order. Each gene is a text that
+// There is a column for each gene. Islands and organisms are numbered from 0, in order. Each gene is a text that
 // parses to the same 32-bit float.
 import {csv_line, csv_records, CsvError} from "../core/csv";
 import {freezer_texts} from "../texts/freezer";
 
 export interface Population {
-  gene_names: string[]; // the first six are body_genes
+  gene_names: string[]; // at least one
   islands: Float32Array[]; // the genes organism by organism
 }
 
-export const body_genes: readonly string[] =
-  ["normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"];
 const genes_max = 10_000;
 const shown_characters_max = 80; // of a wrong line
 const number_pattern = /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
@@ -44,10 +42,9 @@ export function read_population(text: string): Population|string {
       freezer_texts.wrong_line(line, csv_line(cells).slice(0, shown_characters_max), allowed);
     if (gene_names === null) {
       const [island, organism, ...names] = cells;
-      const has_heading =
-        island === "island" && organism === "organism" && body_genes.every((gene, i) => gene === names[i]);
-      if (!has_heading || names.length > genes_max || names.includes("")) {
-        return wrong(freezer_texts.heading(csv_line(["island", "organism", ...body_genes])));
+      const is_heading = island === "island" && organism === "organism" && names.length > 0;
+      if (!is_heading || names.length > genes_max || names.includes("")) {
+        return wrong(freezer_texts.heading);
       }
       gene_names = names;
       continue;
@@ -76,7 +73,7 @@ export function read_population(text: string): Population|string {
     }
   }
   if (gene_names === null) {
-    return freezer_texts.wrong_line(1, "", freezer_texts.heading(csv_line(["island", "organism", ...body_genes])));
+    return freezer_texts.wrong_line(1, "", freezer_texts.heading);
   }
   return islands.length === 0 ? freezer_texts.no_organism :
                                 {gene_names, islands: islands.map((genes) => Float32Array.from(genes))};

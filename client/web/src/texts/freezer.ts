@@ -97,7 +97,7 @@ export const freezer_texts = {
   wrong_line: (line: number, got: string, allowed: string) =>
     `line ${with_separators(line)}: got "${got}", allowed: ${allowed}`,
   not_csv: (line: number) => `line ${with_separators(line)}: a cell in quotation marks does not end as it must`,
-  heading: (heading: string) => `a heading that begins with ${heading}; names of further genes may follow`,
+  heading: "island,organism as the first columns, and a column with a name for each gene",
   row: (genes: number) => `the numbers of island and organism, and ${counted(genes, "gene", "genes")}`,
   order: (organism: number, island: number) =>
     `organism ${organism} of island ${island}, or organism 0 of the next island`,
