@@ -53,6 +53,8 @@ struct PopulationRows {
     // Empty unless the query asks for them, and if there are no bodies.
     std::vector<simulation::Island::Life> lives;
     double tick_s; // unit of Life::lived_ticks
+    // The fitness of the organisms if it is known: it depends on the genes alone, or clients have given it; else empty.
+    std::vector<double> fitness;
 };
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);
 v1::Population to_proto(const PopulationRows& rows);
