@@ -1,7 +1,7 @@
 // FreezerGenes: the genes of an organism in the freezer, compared with those of the selected organism and with the
 // population to which it belongs.
 import {type ComparedGene, compared_genes, difference_counts, range_of_gene} from "../freezer/comparison";
-import {body_genes, is_organism, type Population} from "../freezer/population_csv";
+import {is_organism, type Population} from "../freezer/population_csv";
 import {gene_label, gene_number} from "../organism/texts";
 import {freezer_texts as texts} from "../texts/freezer";
 import {h, set_text} from "../widgets/dom";
@@ -10,6 +10,7 @@ import {hint} from "../widgets/form";
 import type {ChosenOrganism, ShownEntry} from "./freezer_choice";
 import {table_head} from "./rows";
 
+const first_genes = 6; // those of the body, if there are any, are always shown
 const further_genes_max = 500; // shown in the table
 
 /** The selected organism; id null: none is selected. */
@@ -39,9 +40,9 @@ export class FreezerGenes {
     this.#drawn = drawn;
     const {population} = shown;
     const genes = compared_genes(population.gene_names, chosen.genes, other.gene_names, other.genes);
-    const further = genes.slice(body_genes.length), is_open = this.#tables.querySelector("details")?.open ?? false;
+    const further = genes.slice(first_genes), is_open = this.#tables.querySelector("details")?.open ?? false;
     set_text(this.#summary, summary_text(genes, other.id));
-    this.#tables.replaceChildren(table(population, genes.slice(0, body_genes.length), 0, other.id));
+    this.#tables.replaceChildren(table(population, genes.slice(0, first_genes), 0, other.id));
     if (further.length > 0) {
       this.#tables.append(further_genes(population, further, other.id, is_open));
     }
@@ -83,12 +84,12 @@ function table(population: Population, genes: readonly ComparedGene[], first: nu
             ...cells(gene, i).map((text) => h("td", {class: "number"}, text))))));
 }
 
-/** The genes behind those of the body. Their table is made when the user opens it. */
+/** The genes behind the first ones. Their table is made when the user opens it. */
 function further_genes(
   population: Population, genes: readonly ComparedGene[], other: number|null, is_open: boolean): HTMLElement {
   const fill = (): void => {
     if (details.open && details.children.length === 1) {
-      details.append(table(population, genes.slice(0, further_genes_max), body_genes.length, other));
+      details.append(table(population, genes.slice(0, further_genes_max), first_genes, other));
       if (genes.length > further_genes_max) {
         details.append(hint(texts.genes_left_out(genes.length - further_genes_max)));
       }
