@@ -1,5 +1,6 @@
-// Overview: how the shown world does: its healthiest organisms and its live fitness curve. It is the first panel of the
-// column.
+// Overview: how the shown world does: its healthiest organisms, its live fitness curve and the best solution. It is the
+// first panel of the column.
+import {BestSolution} from "../panels/best_solution";
 import {FitnessCurve, show_generation} from "../plots/fitness_curve";
 import {column_texts as texts} from "../texts/column";
 import {set_attribute} from "../widgets/controls";
@@ -16,17 +17,19 @@ export class Overview implements Panel {
   readonly #healthiest = h("span", {});
   readonly #buttons: readonly HTMLButtonElement[]; // of the healthiest organisms
   readonly #curve: FitnessCurve;
+  readonly #best: BestSolution;
 
   /** evolution: the button that shows it. */
   constructor(context: PanelContext, evolution: HTMLElement) {
     this.#context = context;
     this.#curve = new FitnessCurve((generation) => void show_generation(context, generation));
+    this.#best = new BestSolution(context);
     this.#buttons = Array.from(
       {length: named},
       (_, i) => h("button", {type: "button", class: "link", onclick: () => this.#select_healthiest(i)}));
     this.element =
       h("div", {class: "overview"}, h("p", {class: "healthiest"}, this.#healthiest, ...this.#buttons), evolution,
-        h("div", {class: "curve"}, this.#curve.element));
+        h("div", {class: "curve"}, this.#curve.element), this.#best.element);
   }
 
   refresh(): void {
@@ -40,11 +43,13 @@ export class Overview implements Panel {
     });
     set_text(
       this.#healthiest,
-      healthiest.length > 0                   ? texts.healthiest :
+      !world.has_bodies                         ? "" :
+        healthiest.length > 0                 ? texts.healthiest :
         !snapshot                             ? "" :
         (snapshot.live?.alive_count ?? 0) > 0 ? texts.zoom_in :
                                                 texts.none_alive);
     this.#curve.update(world);
+    this.#best.update(world);
   }
 
   #select_healthiest(i: number): void {
