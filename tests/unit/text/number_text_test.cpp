@@ -103,8 +103,9 @@ TEST(NumberText, IsRoundedLikePrintf) {
 
 TEST(NumberText, OfAFitnessIsTheSameInAllPrograms) {
     std::ifstream file{EVOD_SOURCE_FOLDER "/proto/vectors/fitness.json"};
-    const std::string vectors{std::istreambuf_iterator<char>{file}, {}};
-    for (const boost::json::value& vector : boost::json::parse(vectors).as_array()) {
+    const std::string vectors(std::istreambuf_iterator<char>{file}, {});
+    const boost::json::value examples = boost::json::parse(vectors); // outlives the loop
+    for (const boost::json::value& vector : examples.as_array()) {
         EXPECT_EQ(fitness_text(vector.at(0).to_number<double>()), vector.at(1).as_string()) << vector;
     }
     EXPECT_EQ(fitness_text(Limits::quiet_NaN()), "nan");

@@ -15,6 +15,7 @@ export class Overview implements Panel {
   readonly element: HTMLElement;
   readonly #context: PanelContext;
   readonly #healthiest = h("span", {});
+  readonly #healthiest_line: HTMLElement;
   readonly #buttons: readonly HTMLButtonElement[]; // of the healthiest organisms
   readonly #curve: FitnessCurve;
   readonly #best: BestSolution;
@@ -27,8 +28,9 @@ export class Overview implements Panel {
     this.#buttons = Array.from(
       {length: named},
       (_, i) => h("button", {type: "button", class: "link", onclick: () => this.#select_healthiest(i)}));
+    this.#healthiest_line = h("p", {class: "healthiest"}, this.#healthiest, ...this.#buttons);
     this.element =
-      h("div", {class: "overview"}, h("p", {class: "healthiest"}, this.#healthiest, ...this.#buttons), evolution,
+      h("div", {class: "overview"}, this.#healthiest_line, evolution,
         h("div", {class: "curve"}, this.#curve.element), this.#best.element);
   }
 
@@ -41,9 +43,9 @@ export class Overview implements Panel {
       set_attribute(button, "aria-label", organism ? texts.organism_name(organism.id, organism.health) : null);
       set_attribute(button, "aria-pressed", String(organism !== undefined && organism.id === selected));
     });
+    this.#healthiest_line.hidden = !world.has_bodies;
     set_text(
       this.#healthiest,
-      !world.has_bodies                         ? "" :
         healthiest.length > 0                 ? texts.healthiest :
         !snapshot                             ? "" :
         (snapshot.live?.alive_count ?? 0) > 0 ? texts.zoom_in :

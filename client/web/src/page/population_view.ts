@@ -17,7 +17,8 @@ import {observe_size} from "./canvas_size";
 
 const organisms_read = 10_000; // of a larger population only the first ones are read
 const upright_pixels = 72; // between axes with less room, labels are turned
-const font_pixels = 11, line_pixels = 15, turned_top = 118, turned_bottom = 56;
+const font_pixels = 11, line_pixels = 15;
+const turned_high = 44, turned_gap = 6; // of turned labels: room for the upper bound, and between it and the name
 
 type Axis = GeneAxis&{min: number; max: number; values: Float32Array; x: number};
 
@@ -116,7 +117,8 @@ export class PopulationView {
       const values = columns.genes[this.#first_gene + i]!;
       return {...bounded(axis, values), values, x: (i + 0.5) * space};
     });
-    const top = is_turned ? turned_top : 2.5 * line_pixels, bottom = height - (is_turned ? turned_bottom : 1.5 * line_pixels);
+    const top = is_turned ? between(0.3 * height, 70, 120) : 2.5 * line_pixels;
+    const bottom = height - (is_turned ? between(0.13 * height, 30, 56) : 1.5 * line_pixels);
     context.font = `${font_pixels}px ${theme.font}`;
     this.#draw_axes(context, theme, axes, top, bottom);
     this.#draw_lines(context, axes, sample, fitness, top, bottom);
@@ -127,7 +129,11 @@ export class PopulationView {
       draw_line(context, axes, best, top, bottom);
     }
     for (const axis of axes) {
-      draw_labels(context, theme, axis, space, is_turned, top, bottom);
+      if (is_turned) {
+        draw_turned_labels(context, theme, axis, top, bottom, height);
+      } else {
+        draw_labels(context, theme, axis, space, top, bottom);
+      }
     }
   }
 
@@ -137,6 +143,7 @@ export class PopulationView {
     const best_text = best === null ? texts.unrated : texts.best(best, fitness![best]!);
     set_text(this.#shown, columns === null ? texts.loading : texts.shown(drawn, read, columns.organism_count));
     set_text(this.#best, columns === null ? "" : best_text);
+    set_attribute(this.#best, "data-known", best === null ? null : "");
     this.#scale.hidden = fitness === null;
     if (fitness !== null) {
       set_text(this.#low, fitness_text(least_of(fitness)));
@@ -168,7 +175,7 @@ export class PopulationView {
     const share = (id: number): number =>
       fitness === null ? 0.5 : high > low ? (fitness[id]! - low) / (high - low) : 1;
     context.lineWidth = 1;
-    context.globalAlpha = Math.min(Math.max(60 / sample.length, 0.12), 0.85);
+    context.globalAlpha = between(50 / sample.length, 0.06, 0.85);
     for (const id of fitness === null ? sample : [...sample].sort((a, b) => fitness[a]! - fitness[b]!)) { // the best last
       context.strokeStyle = css(ramp_at(this.#world.look.palette, share(id)));
       draw_line(context, axes, id, top, bottom);
@@ -201,29 +208,37 @@ function draw_line(context: CanvasRenderingContext2D, axes: Axis[], id: number, 
   context.stroke();
 }
 
+function between(value: number, least: number, most: number): number {
+  return Math.min(Math.max(value, least), most);
+}
+
+/** Draws the bounds and the name of an axis upwards. */
+function draw_turned_labels(
+  context: CanvasRenderingContext2D, theme: PlotTheme, axis: Axis, top: number, bottom: number, height: number): void {
+  const {x} = axis, high = clipped(context, gene_value_text(axis, axis.max), turned_high);
+  const name_y = top - 4 - context.measureText(high).width - turned_gap;
+  context.textBaseline = "middle";
+  draw_turned(context, theme.quiet, high, x, top - 4, "left");
+  draw_turned(context, theme.text, clipped(context, axis.name, name_y - 4), x, name_y, "left");
+  const low = clipped(context, gene_value_text(axis, axis.min), height - bottom - 6);
+  draw_turned(context, theme.quiet, low, x, bottom + 4, "right");
+}
+
 /** Draws the name of an axis, its bounds, and its choices. */
 function draw_labels(
-  context: CanvasRenderingContext2D, theme: PlotTheme, axis: Axis, space: number, is_turned: boolean, top: number,
-  bottom: number): void {
+  context: CanvasRenderingContext2D, theme: PlotTheme, axis: Axis, space: number, top: number, bottom: number): void {
   const low = gene_value_text(axis, axis.min), high = gene_value_text(axis, axis.max), {x} = axis;
   context.textBaseline = "middle";
-  if (is_turned) {
-    const clipped_name = clipped(context, axis.name, top - 52), clipped_high = clipped(context, high, 44);
-    draw_turned(context, theme.quiet, clipped_high, x, top - 4, "left");
-    draw_turned(context, theme.text, clipped_name, x, top - 10 - context.measureText(clipped_high).width, "left");
-    draw_turned(context, theme.quiet, clipped(context, low, turned_bottom - 8), x, bottom + 4, "right");
-    return;
-  }
   context.textAlign = "center";
   context.fillStyle = theme.text;
   context.fillText(clipped(context, axis.name, space - 6), x, line_pixels * 0.7);
   context.fillStyle = theme.quiet;
   context.fillText(clipped(context, high, space - 6), x, line_pixels * 1.8);
   context.fillText(clipped(context, low, space - 6), x, bottom + line_pixels * 0.8);
-  const between = axis.choices.slice(1, -1);
-  if (between.length > 0 && (bottom - top) / axis.choices.length >= line_pixels) {
+  const inner = axis.choices.slice(1, -1);
+  if (inner.length > 0 && (bottom - top) / axis.choices.length >= line_pixels) {
     context.textAlign = "left";
-    between.forEach((choice, i) => {
+    inner.forEach((choice, i) => {
       const y = bottom - (bottom - top) * place_on(axis, i + 1);
       draw_on_ground(context, theme, clipped(context, choice, space / 2 - 8), x + 5, y);
     });
