@@ -71,7 +71,7 @@ std::string contender_text(const v1::Breeding& bred, const BreedingOptions& opti
     for (int i = 0; i < shown; ++i) {
         const auto& c = bred.contenders(i);
         std::vector<std::string> cells{std::to_string(options.from + static_cast<std::uint32_t>(i)),
-                                       fixed(c.fitness(), 2),
+                                       fitness_text(c.fitness()),
                                        std::to_string(c.rank() + 1),
                                        fixed(c.weight(), 3),
                                        c.slot_end() > 0 ? fixed(c.slot_begin(), 4) + "–" + fixed(c.slot_end(), 4) : "",
@@ -81,7 +81,7 @@ std::string contender_text(const v1::Breeding& bred, const BreedingOptions& opti
                                                              ", organism " + std::to_string(c.migrant().organism())
                                                        : ""};
         if (shuffled) {
-            cells.insert(cells.begin() + 1, fixed(c.own_fitness(), 2));
+            cells.insert(cells.begin() + 1, fitness_text(c.own_fitness()));
         }
         table.add(std::move(cells));
     }

@@ -104,12 +104,18 @@ Caller::Caller(const Common& common) : timeout_{common.timeout()} {
 }
 
 v1::Response Caller::call(v1::Request request, std::optional<std::chrono::milliseconds> timeout) {
+    const bool changes = !request.has_get_parameters();
     auto response = connection_->request(std::move(request), timeout.value_or(timeout_));
     if (!response) {
         const bool usage = response.error().kind == core::Error::Kind::Usage;
         const bool late = response.error().kind == core::Error::Kind::Timeout;
         throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection,
                    response.error().what + (late ? "; if the server is busy, wait longer with --timeout" : "")};
+    }
+    if (changes) {
+        for (const std::string& warning : response->warnings()) {
+            std::cerr << visible("evoctl: warning: " + warning + "\n");
+        }
     }
     if (!core::accepted(*response)) {
         const bool wrong = response->status().code() == v1::CODE_INVALID_ARGUMENT;

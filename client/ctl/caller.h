@@ -46,7 +46,7 @@ class Caller {
     explicit Caller(const Common& common);
 
     /// Sends a request and returns the server's response. Throws Stop if the server refuses the request, or does not
-    /// answer within `timeout`, which is --timeout by default.
+    /// answer within `timeout`, which is --timeout by default. Prints the warnings about a change to stderr.
     v1::Response call(v1::Request request, std::optional<std::chrono::milliseconds> timeout = {});
 
     /// Returns the server's registry of parameters.

@@ -135,8 +135,8 @@ Table generation_table() {
 }
 
 void add_generation(Table& table, const v1::GenerationStatistics& g) {
-    table.add({std::to_string(g.generation()), std::to_string(g.island()), fixed(g.fitness_best(), 1),
-               fixed(g.fitness_mean(), 1), fixed(g.fitness_median(), 1), fixed(g.fitness_worst(), 1),
+    table.add({std::to_string(g.generation()), std::to_string(g.island()), fitness_text(g.fitness_best()),
+               fitness_text(g.fitness_mean()), fitness_text(g.fitness_median()), fitness_text(g.fitness_worst()),
                fixed(g.diversity(), 3), std::to_string(g.alive_count()) + "/" + std::to_string(g.organism_count()),
                std::to_string(g.starved_count()), std::to_string(g.poisoned_count()), duration(g.simulated_s())});
 }
@@ -417,7 +417,7 @@ void best(const Common& common, const HistoryOptions& options) {
             genes.add({i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i),
                        text::rounded(double{info.genes(i)}, 6)});
         }
-        return "fitness " + text::rounded(top->fitness_best(), 6) + ": organism " + std::to_string(info.id()) +
+        return "fitness " + fitness_text(top->fitness_best()) + ": organism " + std::to_string(info.id()) +
                " of island " + std::to_string(info.island()) + ", generation " + std::to_string(info.generation()) +
                "\n" + genes.to_text();
     });

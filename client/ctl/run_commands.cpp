@@ -212,8 +212,8 @@ class Progress {
             mean += island.fitness_mean() / finished.statistics_size();
         }
         if (finished.statistics_size() > 0) {
-            last_ = "generation " + std::to_string(finished.statistics(0).generation()) + ": best " + fixed(best, 1) +
-                    ", mean " + fixed(mean, 1);
+            last_ = "generation " + std::to_string(finished.statistics(0).generation()) + ": best " +
+                    fitness_text(best) + ", mean " + fitness_text(mean);
             if (!live_) {
                 std::cerr << visible(last_) << std::endl;
             } else if (!goal_) {

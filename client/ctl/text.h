@@ -51,6 +51,7 @@ void use_colors(bool used);
 std::string visible(std::string utf8);
 
 using core::duration;
+using text::fitness_text;
 using text::fixed;
 using text::number_text;
 /// Formats a short duration: "12 µs", "3.4 ms", "1.2 s".

@@ -41,8 +41,8 @@ GenerationLine line_of(const google::protobuf::RepeatedPtrField<v1::GenerationSt
 }
 
 std::string text_of(const GenerationLine& line) {
-    return "generation " + std::to_string(line.generation) + ": best " + fixed(line.fitness_best, 1) + ", mean " +
-           fixed(line.fitness_mean, 1) + ", diversity " + fixed(line.diversity, 3) + ", alive " +
+    return "generation " + std::to_string(line.generation) + ": best " + fitness_text(line.fitness_best) + ", mean " +
+           fitness_text(line.fitness_mean) + ", diversity " + fixed(line.diversity, 3) + ", alive " +
            std::to_string(line.alive_count) + "/" + std::to_string(line.organism_count) + ", starved " +
            std::to_string(line.starved_count) + ", poisoned " + std::to_string(line.poisoned_count);
 }
@@ -209,7 +209,8 @@ class WatchDisplay {
             const std::size_t columns = terminal_size().columns;
             const std::size_t shown = std::min(width, columns > figures ? columns - figures : 1);
             text += "last  " + text_of(lines_.back()) + "\n\nbest  " + sparkline(best, shown) + "  " +
-                    fixed(best.back(), 1) + "\nmean  " + sparkline(mean, shown) + "  " + fixed(mean.back(), 1) + "\n";
+                    fitness_text(best.back()) + "\nmean  " + sparkline(mean, shown) + "  " + fitness_text(mean.back()) +
+                    "\n";
         } else {
             text += "no generation has ended yet\n";
         }

@@ -46,6 +46,16 @@ inline std::string fixed(double value, int decimals) {
     return formatted_number(value, std::chars_format::fixed, decimals);
 }
 
+/// Returns a fitness as all programs print it: with one decimal from 10 on, and below with four significant digits, but
+/// at least one decimal. From 1e7 on it has four significant digits and an exponent. Ties are rounded to even, and zero
+/// has no sign. proto/vectors/fitness.json has examples; the page and evoview add separators and a typographic minus.
+inline std::string fitness_text(double value) {
+    value += 0.0; // no minus sign for 0
+    const double size = std::abs(value);
+    std::string text = value == 0 || (size >= 10 && size < 1e7) ? fixed(value, 1) : rounded(value, 4);
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text; // not "1e+07", "inf" and "nan"
+}
+
 /// "12,345".
 inline std::string with_separators(std::uint64_t number) {
     std::string text = std::to_string(number);

@@ -1,5 +1,7 @@
 #include "server/commands/report.h"
 
+#include "proto/text/number_text.h"
+
 #include <cstdio>
 
 namespace evod::commands {
@@ -22,11 +24,14 @@ std::string table_heading(bool with_island) {
 
 std::string table_row(const simulation::GenerationStatistics& s, bool with_island) {
     const std::string island = with_island ? row_text(" %6u", s.island) : std::string{};
-    return row_text("%10llu%s %8.1f %8.1f %8.1f %8.1f %8.1f %6u %7u %8u %7llu %7llu %9.4f",
-                    static_cast<unsigned long long>(s.generation), island.c_str(), s.fitness_best, s.fitness_mean,
-                    s.fitness_median, s.fitness_worst, s.fitness_deviation, s.alive_count, s.starved_count,
-                    s.poisoned_count, static_cast<unsigned long long>(s.food_eaten),
-                    static_cast<unsigned long long>(s.poison_eaten), s.diversity);
+    std::string row = row_text("%10llu%s", static_cast<unsigned long long>(s.generation), island.c_str());
+    for (const double fitness :
+         {s.fitness_best, s.fitness_mean, s.fitness_median, s.fitness_worst, s.fitness_deviation}) {
+        row += row_text(" %8s", text::fitness_text(fitness).c_str());
+    }
+    return row + row_text(" %6u %7u %8u %7llu %7llu %9.4f", s.alive_count, s.starved_count, s.poisoned_count,
+                          static_cast<unsigned long long>(s.food_eaten),
+                          static_cast<unsigned long long>(s.poison_eaten), s.diversity);
 }
 
 std::string real_time_text(double factor) {

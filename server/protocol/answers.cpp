@@ -7,9 +7,32 @@
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
 
+#include <optional>
 #include <utility>
 
 namespace evod::protocol {
+namespace {
+
+/// Returns the parameters that CreateWorld, ResetWorld or SetParameters has requested. A planned change counts as
+/// applied. nullopt: the command was another one.
+std::optional<parameters::RequestedParameters> requested_by(const std::string& request_name,
+                                                            const simulation::Laboratory& laboratory,
+                                                            const simulation::Applied& applied) {
+    if (applied.parameters) {
+        return applied.parameters->requested;
+    }
+    const auto entry = laboratory.find(applied.world);
+    if (entry && (request_name == "create_world" || request_name == "reset_world")) {
+        return (*entry)->world.parameters().requested;
+    }
+    if (entry && request_name == "set_parameters" && applied.planned) {
+        const auto requested = parameters::assign((*entry)->world.parameters().requested, applied.planned->assignments);
+        return requested ? std::optional{*requested} : std::nullopt;
+    }
+    return std::nullopt;
+}
+
+} // namespace
 
 v1::Response answer_of(std::uint64_t request_id, const std::string& request_name,
                        const simulation::Laboratory& laboratory, const base::Result<simulation::Applied>& applied) {
@@ -29,6 +52,9 @@ v1::Response answer_of(std::uint64_t request_id, const std::string& request_name
         *response.mutable_removed() = removed_message(*applied->removed);
     } else if (const auto entry = laboratory.find(applied->world)) { // a deleted world is not found
         *response.mutable_world() = to_proto(**entry);
+    }
+    if (const auto requested = requested_by(request_name, laboratory, *applied)) {
+        add_warnings(response, *requested);
     }
     return response;
 }

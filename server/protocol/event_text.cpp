@@ -7,9 +7,7 @@
 #include <google/protobuf/descriptor.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -110,17 +108,6 @@ std::string real_text(double number) {
     return text::number_text(number + 0.0, text::Exponent::IfLong); // + 0.0: -0 becomes 0
 }
 
-std::string one_decimal(double number) {
-    if (std::abs(number) >= 1e15) {
-        return real_text(number);
-    }
-    // std::to_chars rounds ties to even. Only numbers that end in .25 or .75 are ties.
-    if (std::fmod(std::abs(number), 0.5) == 0.25) {
-        number = std::nextafter(number, std::copysign(std::numeric_limits<double>::infinity(), number));
-    }
-    return text::fixed(number + 0.0, 1);
-}
-
 /// "3 organisms"; without words, only the number.
 Filled amount(std::uint64_t number, std::string_view words) {
     std::string text = text::with_separators(number);
@@ -184,7 +171,7 @@ Filled text_of_all(const std::vector<Value>& values, std::string_view rule, cons
             result = kind == "max" ? std::max(result, value.real())
                                    : result + value.real() / static_cast<double>(values.size());
         }
-        return {one_decimal(result), any_present()};
+        return {text::fitness_text(result), any_present()};
     }
     if (kind == "if") {
         return {"", any_present()};

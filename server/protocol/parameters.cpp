@@ -4,6 +4,7 @@
 
 #include "server/base/exact_number.h"
 #include "server/parameters/choice_help.h"
+#include "server/parameters/warnings.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/refusals.h"
 
@@ -112,6 +113,12 @@ v1::ParameterSet to_proto(const parameters::ParameterSet& set) {
     to.set_revision(set.revision);
     to.set_summary(experiment_summary(set.active));
     return to;
+}
+
+void add_warnings(v1::Response& response, const parameters::RequestedParameters& requested) {
+    for (std::string& warning : parameters::warnings_of(requested.values)) {
+        response.add_warnings(std::move(warning));
+    }
 }
 
 google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const parameters::Schedule& schedule,

@@ -19,6 +19,9 @@ v1::ParameterValue to_proto(const parameters::ParameterValue& value);
 v1::ParameterDescription to_proto(const parameters::ParameterDescription& description);
 v1::ParameterSet to_proto(const parameters::ParameterSet& set);
 
+/// Adds the warnings about requested parameters to an answer.
+void add_warnings(v1::Response& response, const parameters::RequestedParameters& requested);
+
 /// Returns the scheduled values of future generations.
 google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const parameters::Schedule& schedule,
                                                                 std::uint64_t after_generation);

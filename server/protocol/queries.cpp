@@ -8,6 +8,7 @@
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
 #include "server/protocol/worlds.h"
+#include "server/simulation/fitness.h"
 
 #include <algorithm>
 #include <bit>
@@ -195,6 +196,24 @@ v1::History to_proto(const HistoryPart& part) {
     return history;
 }
 
+/// Returns PopulationRows::fitness.
+std::vector<double> known_fitness(const simulation::World& world, const simulation::Island& island, base::Range ids) {
+    const parameters::FitnessFunction function = world.parameters().active.fitness;
+    std::vector<double> fitness;
+    if (function == parameters::FitnessFunction::External && world.is_rated(island.index())) {
+        const std::size_t objectives = world.parameters().active.objectives;
+        const std::vector<double>& given = world.ratings()[island.index()].fitness;
+        fitness.assign(given.data() + ids.begin * objectives, given.data() + ids.end * objectives);
+    } else if (!world.has_bodies() && function != parameters::FitnessFunction::External) {
+        const auto of_genes =
+            function == parameters::FitnessFunction::GeneSum ? simulation::gene_sum : simulation::rastrigin;
+        for (std::size_t id = ids.begin; id < ids.end; ++id) {
+            fitness.push_back(of_genes(evolution::body_genes(island.born().genes, static_cast<std::uint32_t>(id))));
+        }
+    }
+    return fitness;
+}
+
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query) {
     const auto found = find_island(laboratory, query.world(), query.island(), "get_population.island");
     if (!found) {
@@ -220,19 +239,14 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
                           .founders = {},
                           .intentions = world.intentions(island, ids),
                           .lives = {},
-                          .objectives = {},
-                          .tick_s = world.parameters().active.tick_s};
+                          .tick_s = world.parameters().active.tick_s,
+                          .fitness = known_fitness(world, island, ids)};
     if (query.with_life() && world.has_bodies()) {
         const auto tick = static_cast<std::uint32_t>(world.moment().generation_tick);
         answer.lives.reserve(ids.end - ids.begin);
         for (std::size_t id = ids.begin; id < ids.end; ++id) {
             answer.lives.push_back(island.life(static_cast<std::uint32_t>(id), tick));
         }
-    }
-    if (!world.ratings().empty() && world.is_rated(island.index())) {
-        const std::size_t objectives = world.parameters().active.objectives;
-        const std::vector<double>& all = world.ratings()[island.index()].fitness;
-        answer.objectives.assign(all.data() + ids.begin * objectives, all.data() + ids.end * objectives);
     }
     answer.genes =
         born.genes.middleCols(static_cast<Eigen::Index>(ids.begin), static_cast<Eigen::Index>(ids.end - ids.begin));
@@ -276,11 +290,11 @@ v1::Population to_proto(const PopulationRows& rows) {
     append_column(*population.mutable_health(), rows.lives, [](const Life& life) { return life.health; });
     append_column(*population.mutable_food_eaten(), rows.lives, [](const Life& life) { return life.food_eaten; });
     append_column(*population.mutable_poison_eaten(), rows.lives, [](const Life& life) { return life.poison_eaten; });
-    const std::size_t organisms = static_cast<std::size_t>(rows.genes.cols());
-    for (std::size_t objective = 0; objective < rows.objectives.size() / organisms; ++objective) {
+    const std::size_t objectives = rows.fitness.size() / static_cast<std::size_t>(rows.genes.cols());
+    for (std::size_t objective = 0; objective < objectives; ++objective) {
         std::vector<double> column;
-        for (std::size_t i = objective; i < rows.objectives.size(); i += rows.objectives.size() / organisms) {
-            column.push_back(rows.objectives[i]);
+        for (std::size_t i = objective; i < rows.fitness.size(); i += objectives) {
+            column.push_back(rows.fitness[i]);
         }
         append_column(*population.mutable_objectives(), column, [](double number) { return number; });
     }
@@ -356,6 +370,9 @@ QueryResult answer_query(const v1::Request& request, const simulation::Laborator
         break;
     case v1::Request::kGetParameters:
         put(get_parameters(laboratory, request.get_parameters()), &v1::Response::mutable_parameters);
+        if (const auto entry = laboratory.find(lookup_name(request.get_parameters().world()))) {
+            add_warnings(response, (*entry)->world.parameters().requested);
+        }
         break;
     case v1::Request::kGetStatistics:
         put(get_statistics(laboratory, request.get_statistics()), &v1::Response::mutable_statistics);
@@ -405,7 +422,7 @@ std::size_t row_bytes(const QueryResult& result) {
         return static_cast<std::size_t>(rows->genes.size()) * sizeof(float) +
                rows->parents.size() * sizeof(evolution::Parents) + rows->founders.size() * sizeof(std::uint32_t) +
                rows->intentions.size() * sizeof(simulation::Intention) +
-               rows->lives.size() * sizeof(simulation::Island::Life);
+               rows->lives.size() * sizeof(simulation::Island::Life) + rows->fitness.size() * sizeof(double);
     }
     return 0;
 }

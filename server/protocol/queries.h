@@ -52,8 +52,10 @@ struct PopulationRows {
     std::vector<simulation::Intention> intentions;
     // Empty unless the query asks for them, and if there are no bodies.
     std::vector<simulation::Island::Life> lives;
-    std::vector<double> objectives; // of a rated generation: all numbers of an organism, one organism after another
-    double tick_s;                  // unit of Life::lived_ticks
+    double tick_s; // unit of Life::lived_ticks
+    // What is known of the fitness: it depends on the genes alone, or clients have given it; otherwise empty. All
+    // objectives of an organism, one organism after another.
+    std::vector<double> fitness;
 };
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);
 v1::Population to_proto(const PopulationRows& rows);

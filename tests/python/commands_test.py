@@ -6,6 +6,7 @@ import resource
 import tempfile
 import threading
 import unittest
+import warnings
 from signal import SIGINT
 from unittest import mock
 
@@ -56,6 +57,18 @@ class Commands(unittest.TestCase):
                 world.delete()
                 self.assertEqual(lab.damaged_worlds(), ())
             self.assertTrue(os.path.exists(os.path.join(data, "plate.damaged-1.evod")))
+
+    def test_settings_without_evolution_cause_warnings(self):
+        with self.assertWarnsRegex(UserWarning, "no child is ever bred, because elite_count 12 is not below"):
+            world = self.lab.create_world("elite", {"elite_count": 12, "population_size": 12})
+        with self.assertWarnsRegex(UserWarning, "no child is ever bred"):
+            world.reset()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            world.get_parameters()
+            world.set(elite_count=1)
+        with self.assertWarnsRegex(UserWarning, "because mutation and crossover are off"):
+            world.set(mutation_chance=0, crossover="none", dry_run=True)
 
     def test_every_parameter_is_an_attribute(self):
         world = self.lab.create_world("attributes")

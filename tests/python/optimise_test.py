@@ -11,6 +11,7 @@ import numpy
 
 import evod
 import evod.aio
+from evod.tables import fitness_text
 import waiting
 from support import Temporary
 
@@ -304,7 +305,7 @@ class Optimise(unittest.TestCase):
                                (("--island", "1"), world.history(island=1))):
             best = history.best()
             shown = self.evoctl("--world", world.name, "best", *words, check=True).stdout
-            self.assertIn(f"fitness {best.fitness:.6g}: organism {best.organism} of island {best.island}, "
+            self.assertIn(f"fitness {fitness_text(best.fitness)}: organism {best.organism} of island {best.island}, "
                           f"generation {best.generation}\n", shown)
             self.assertIn(f"{best.genes['free1']:.6g}\n", shown)
         refused = self.evoctl("--world", self.world().name, "best")

@@ -1,18 +1,27 @@
 """Results are frozen dataclasses with states, names of genes, and tables."""
 import dataclasses
 import inspect
+import json
+import pathlib
 import pickle
 import unittest
 
 import numpy
 
 import evod
-from evod import plans
+from evod import plans, tables
 from evod.conversion import result
 from evod.results import CLASSES, STATES
 from evod.v1 import commands_pb2, stream_pb2, world_pb2
 
+VECTORS = pathlib.Path(__file__).resolve().parents[2] / "proto/vectors"
 SMALL = {"island_count": 2, "population_size": 12, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
+
+
+class Numbers(unittest.TestCase):
+    def test_a_fitness_has_the_text_of_all_programs(self):
+        for fitness, text in json.loads((VECTORS / "fitness.json").read_text()):
+            self.assertEqual(tables.fitness_text(fitness), text)
 
 
 class Conversion(unittest.TestCase):

@@ -173,6 +173,13 @@ class Commands(WithServer):
         self.evoctl("reset")
         self.assertEqual(self.evoctl("get", "fitness"), "fitness=gene_sum\n")
 
+    def test_settings_without_evolution_are_warned_about(self):
+        done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, "set", "elite_count=50"],
+                           capture_output=True, text=True, check=True)
+        self.assertEqual(done.stderr, "evoctl: warning: no child is ever bred, because elite_count 50 is not below "
+                                      "population_size 50\n")
+        self.assertIn("elite_count", done.stdout)
+
     def test_errors_name_what_was_typed(self):
         for words, error in (
                 (["speed", "0"], "SPEED: got 0, allowed 0.001 to 10000"),

@@ -39,6 +39,15 @@ class Rating(access.Access):
         self.waiting_world(client)
         return server, client
 
+    def test_a_fitness_has_four_digits(self):
+        server, client = self.begin()
+        for island, numbers in enumerate(("0.953\n0.954\n0.9531\n0.95\n", "-0.004\n-1e-9\n-0.0\n0\n")):
+            self.evoctl("rate", self.file("numbers.txt", numbers), "--island", str(island), server=server)
+        plain.until(lambda: client.call(get_statistics=c.GetStatistics(world="rated")).statistics.last, "its end")
+        rows = [line.split()[2:6] for line in self.evoctl("history", server=server).splitlines()[1:]]
+        self.assertEqual(rows, [["0.954", "0.9525", "0.953", "0.95"], ["0.0", "-0.001", "-5e-10", "-0.004"]])
+        self.assertIn("fitness 0.954: organism 1 of island 0", self.evoctl("best", server=server))
+
     def test_evoctl_rates_and_shows_what_is_missing(self):
         server, client = self.begin()
         numbers = self.file("numbers.txt", "1\n-2.5\n3e3\r\n0\n")

@@ -6,7 +6,7 @@ import functools
 from typing import Any, Mapping, Sequence
 
 from evod.paired_tests import hedges_g, holm, interval, sign_flip_p
-from evod.tables import html_table, number_text, pandas, read_csv
+from evod.tables import fitness_text, html_table, pandas, read_csv
 
 
 @dataclasses.dataclass(frozen=True)
@@ -98,9 +98,9 @@ def comparison_of(csv: str, printed: Mapping[str, Any], seeds: Sequence[int], ge
         differences.append(Difference(world.name, float((rises[0] - other).mean()), low, high,
                                       hedges_g(rises[0] - other), chance, adjusted))
     verdict = " ".join(
-        f"The rise of {worlds[0].name} minus that of {d.other} is {number_text(d.difference)} (adjusted p = "
+        f"The rise of {worlds[0].name} minus that of {d.other} is {fitness_text(d.difference)} (adjusted p = "
         f"{d.adjusted:.2g})." for d in differences)
     lines = [f"{len(seeds)} replicates of {generations} generations, from seed {printed['seed']}", ""]
-    lines += [f"{w.name}: mean fitness {number_text(w.first)} to {number_text(w.last)}, rise {number_text(w.rise)}"
-              f" ({number_text(w.rise_low)} to {number_text(w.rise_high)})" for w in worlds]
+    lines += [f"{w.name}: mean fitness {fitness_text(w.first)} to {fitness_text(w.last)}, rise {fitness_text(w.rise)}"
+              f" ({fitness_text(w.rise_low)} to {fitness_text(w.rise_high)})" for w in worlds]
     return Comparison(tuple(worlds), tuple(differences), verdict, "\n".join([*lines, "", verdict, ""]), csv)

@@ -14,7 +14,7 @@ from evod.errors import FailedPrecondition
 from evod.genes import ACCOUNT_PARTS, GENE_NAMES, Genes
 from evod.objectives import Front
 from evod.results import GenerationStatistics, GeneStatistics
-from evod.tables import html_table, number_text, pandas
+from evod.tables import fitness_text, html_table, pandas
 from evod.v1 import commands_pb2, world_pb2
 
 
@@ -41,10 +41,10 @@ class Solution:
 
     def __repr__(self) -> str:
         genes = ", ".join(f"{name} {value:.4g}" for name, value in self.genes.to_dict().items())
-        return f"<solution of generation {self.generation}: fitness {number_text(self.fitness)}, {genes}>"
+        return f"<solution of generation {self.generation}: fitness {fitness_text(self.fitness)}, {genes}>"
 
     def _repr_html_(self) -> str:
-        caption = f"fitness {number_text(self.fitness)}: organism {self.organism} of generation {self.generation}"
+        caption = f"fitness {fitness_text(self.fitness)}: organism {self.organism} of generation {self.generation}"
         return html_table(("gene", "value"), self.genes.to_dict().items(), caption)
 
 
@@ -166,7 +166,7 @@ class Generation:
         what = f"{self.alive_count} of {self.organism_count} alive"
         if self.evaluation_count is not None:
             what = f"{self.evaluation_count} evaluations"
-        return f"generation {self.number}: best {number_text(self.best)}, mean {number_text(self.mean)}, {what}"
+        return f"generation {self.number}: best {fitness_text(self.best)}, mean {fitness_text(self.mean)}, {what}"
 
     def negated(self) -> Generation:
         """The same generation with the opposite sign of every fitness, as the function of World.evaluate returned it if
@@ -288,7 +288,7 @@ class History(list[Generation]):
 
     def _repr_html_(self) -> str:
         rows: list[tuple[object, ...]] = [
-            (g.number, *map(number_text, (g.best, g.mean, g.worst)), g.alive_count, g.organism_count) for g in self[:]
+            (g.number, *map(fitness_text, (g.best, g.mean, g.worst)), g.alive_count, g.organism_count) for g in self[:]
         ]
         if len(rows) > 2 * _ROWS_SHOWN:
             rows[_ROWS_SHOWN:-_ROWS_SHOWN] = [("…",) * len(rows[0])]

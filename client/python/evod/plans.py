@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import io
+import warnings
 from typing import Any, Callable, Generator, Mapping, Sequence, TypeVar, Union
 
 import google.protobuf.descriptor
@@ -26,6 +27,7 @@ from evod.errors import (
     Violation,
     argument_of,
     damaged_world,
+    printable,
     refusal,
     wrong_argument,
 )
@@ -71,10 +73,13 @@ DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "dens
 
 
 def execute(message: c.Request) -> Plan[c.Response]:
-    """Sends a request. Raises Error if the server refuses it."""
+    """Sends a request. Raises Error if the server refuses it. Warns about settings with which nothing can evolve."""
     response: c.Response = yield message
     if response.status.code != c.CODE_UNSPECIFIED:
         raise refusal(response.status)
+    if not message.HasField("get_parameters"):
+        for warning in response.warnings:
+            warnings.warn(printable(warning), stacklevel=2)
     return response
 
 

@@ -8,7 +8,7 @@ from typing import Callable, Iterator
 
 from evod.errors import MissingPackage
 from evod.generations import Generation
-from evod.tables import number_text
+from evod.tables import fitness_text
 
 
 @contextlib.contextmanager
@@ -44,8 +44,8 @@ class ProgressLine:
     def show(self, generation: Generation) -> None:
         """Shows a generation."""
         of = "" if self._last is None else f" of {self._last}"
-        line = (f"generation {generation.number}{of}: best {number_text(generation.best)}, "
-                f"mean {number_text(generation.mean)}, {generation.evaluation_count} evaluations, "
+        line = (f"generation {generation.number}{of}: best {fitness_text(generation.best)}, "
+                f"mean {fitness_text(generation.mean)}, {generation.evaluation_count} evaluations, "
                 f"{time.monotonic() - self._began:.1f} s")
         is_terminal = sys.stderr.isatty()
         sys.stderr.write(f"\r{line:<{self._width}}" if is_terminal else line + "\n")

@@ -44,10 +44,10 @@ def _genes_in(text: str) -> Sequence[str]:
     return genes[: genes.index("fitness")] if "fitness" in genes else genes
 
 
-def number_text(value: float) -> str:
-    """Returns a fitness as text: one decimal, and at least four significant digits.
+def fitness_text(value: float) -> str:
+    """Returns a fitness as text, by the rule of ``fitness_text`` in proto/text/number_text.h.
 
-    >>> [number_text(value) for value in (337.62, 12.0, 0.95312, -0.004, 0.0, 1.5e9)]
+    >>> [fitness_text(value) for value in (337.62, 12.0, 0.95312, -0.004, 0.0, 1.5e9)]
     ['337.6', '12.0', '0.9531', '-0.004', '0.0', '1.5e+09']
     """
     value += 0.0  # no minus sign for 0

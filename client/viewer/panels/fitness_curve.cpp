@@ -85,7 +85,7 @@ std::optional<std::uint64_t> build_fitness_curve(std::span<const Generation> gen
          {std::tuple{" best ", newest.best, palette::series_orange}, {" mean ", newest.mean, palette::series_blue}}) {
         const float y = title.y + gui.label().FontSize / 2;
         list.AddLine({x + 10 * scale, y}, {x + 24 * scale, y}, ink(colour), 2 * scale);
-        x = write(list, gui.label(), {x + 24 * scale, title.y}, palette::text, name + significant(value));
+        x = write(list, gui.label(), {x + 24 * scale, title.y}, palette::text, name + shown_fitness(value));
     }
     Axes axes{.first = static_cast<double>(generations.front().number),
               .last = static_cast<double>(newest.number),
@@ -113,8 +113,8 @@ std::optional<std::uint64_t> build_fitness_curve(std::span<const Generation> gen
     const float at = axes.x_of(pointed.number);
     list.AddLine({at, axes.corner.y}, {at, axes.corner.y + axes.size.y}, ink(palette::text_quiet));
     ImGui::SetTooltip("generation %s\nbest %s\nmean %s\nA click shows this generation in a replay.",
-                      with_separators(pointed.number).c_str(), shown_number(pointed.best).c_str(),
-                      shown_number(pointed.mean).c_str());
+                      with_separators(pointed.number).c_str(), shown_fitness(pointed.best).c_str(),
+                      shown_fitness(pointed.mean).c_str());
     return clicked ? std::optional{pointed.number} : std::nullopt;
 }
 

@@ -62,8 +62,11 @@ void Summary::build_experiment(Panel::Context& context) {
 }
 
 /// Explains the marks of the island in one line: each mark as it is drawn, on the ground of the island, with its name.
-/// A second line names the healthiest organisms.
+/// A second line names the healthiest organisms. Without bodies there is neither.
 void Summary::build_marks(const Panel::Context& context) {
+    if (!experiment_.has_bodies()) {
+        return;
+    }
     const Look look = context.island_view.options.look;
     const Gui& gui = context.gui;
     const float scale = gui.scale(), radius = 7 * scale, gap = 6 * scale, height = 26 * scale;

@@ -173,7 +173,7 @@ void WorldsPanel::build_islands(ViewedWorld& world) {
             }
             ImGui::TableNextColumn();
             if (const auto* last = of_island(statistics_.last(), island)) {
-                ImGui::TextUnformatted(shown_tenths(last->fitness_best()).c_str());
+                ImGui::TextUnformatted(shown_fitness(last->fitness_best()).c_str());
             }
         }
     }

@@ -1,5 +1,7 @@
 #include "client/viewer/text/numbers.h"
 
+#include "proto/text/number_text.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -52,20 +54,16 @@ std::string shown_number(double number) {
     return with_separators(text == "-0" ? "0" : std::move(text));
 }
 
-std::string significant(double number) {
-    if (number == 0 || !std::isfinite(number)) {
-        return shown_number(number);
-    }
-    const double unit = std::pow(10, std::floor(std::log10(std::abs(number))) - 2);
-    return shown_number(std::round(number / unit) * unit);
-}
-
 std::string three_digits(double number) {
     const double size = std::abs(number);
     if (!std::isfinite(number) || size >= 1e12) {
         return shown_number(number);
     }
     return with_separators(print(size >= 999.5 ? "%.0f" : "%.3g", number));
+}
+
+std::string shown_fitness(double fitness) {
+    return std::isfinite(fitness) ? with_separators(text::fitness_text(fitness)) : "–";
 }
 
 std::string shown_tenths(double number) {

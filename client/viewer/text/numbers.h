@@ -20,13 +20,12 @@ std::string with_separators(std::string printed);
 
 /// Returns the number with at most six digits: "1,234.5", "0.0123"; "–" if it is not finite.
 std::string shown_number(double number);
-/// Returns the number rounded to three significant digits: "1,230", "0.0123", "1.23e-06"; "–" if it is not finite.
-std::string significant(double number);
 
 /// Returns the number with three significant digits: "1.21", "0.0123"; 1,000 and more as a whole number: "12,346"; "–"
 /// if it is not finite.
 std::string three_digits(double number);
 
+std::string shown_fitness(double fitness); // by the rule of text::fitness_text, with separators: −1234.56 → "−1,234.6"
 std::string shown_tenths(double number); // 251.34 → "251.3"
 
 /// Parses a text that consists of digits only. Returns nullopt for any other text and for numbers that need more than

@@ -3,6 +3,22 @@
 #include <utility>
 
 namespace evod::viewer {
+namespace {
+
+bool has_bodies(const evod::v1::ParameterSet& set) {
+    std::string fitness;
+    bool external_bodies = true;
+    for (const evod::v1::ParameterState& parameter : set.parameters()) {
+        if (parameter.name() == "fitness") {
+            fitness = parameter.value().choice();
+        } else if (parameter.name() == "external_bodies") {
+            external_bodies = parameter.value().flag();
+        }
+    }
+    return fitness == "life" || (fitness == "external" && external_bodies);
+}
+
+} // namespace
 
 void Experiment::update(ViewedWorld& world, Poll::Clock::time_point now) {
     const RunControl& control = world.feed.control();
@@ -30,6 +46,7 @@ void Experiment::update(ViewedWorld& world, Poll::Clock::time_point now) {
     poll_.send(world, std::move(request), now, [this](const evod::v1::Response* response) {
         if (response != nullptr) {
             text_ = response->parameters().summary();
+            has_bodies_ = viewer::has_bodies(response->parameters());
         } else {
             stale_ = true;
         }

@@ -19,6 +19,8 @@ class Experiment {
 
     /// Returns the sentences; empty until the parameters have arrived.
     const std::string& text() const { return text_; }
+    /// Whether the organisms live on an island. Otherwise only their genes matter, and islands are empty.
+    bool has_bodies() const { return has_bodies_; }
 
   private:
     static constexpr std::chrono::seconds poll_interval{1}; // a fast world finishes many generations per second
@@ -28,6 +30,7 @@ class Experiment {
     std::uint64_t connected_count_ = 0;
     bool stale_ = true;
     std::string text_;
+    bool has_bodies_ = true;
 };
 
 } // namespace evod::viewer

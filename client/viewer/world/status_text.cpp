@@ -117,9 +117,10 @@ std::vector<std::string> statistics_texts(const evod::v1::SnapshotFrame& snapsho
         "tick " + with_separators(snapshot.tick()) + " (" + core::duration(snapshot.simulated_s()) + ")",
     };
     if (last_generation != nullptr) {
-        pieces.push_back(print("fitness of generation %llu: best %.1f, mean %.1f",
+        pieces.push_back(print("fitness of generation %llu: best %s, mean %s",
                                static_cast<unsigned long long>(last_generation->generation()),
-                               last_generation->fitness_best(), last_generation->fitness_mean()));
+                               shown_fitness(last_generation->fitness_best()).c_str(),
+                               shown_fitness(last_generation->fitness_mean()).c_str()));
     }
     return pieces;
 }

@@ -52,6 +52,17 @@ class Connection(Case):
         self.assertEqual(waiting.ended(self.served.process), 0)
         self.assertEqual(self.journal("run_until_tick"), 2)  # one by the TCP client, one by the page
 
+    def test_a_silent_server_is_not_called_running(self):
+        browser = self.browser
+        browser.run("void evod.app.world().control.run()")
+        browser.wait_for_text("running", ".pane-state")
+        self.served.process.send_signal(signal.SIGSTOP)
+        self.addCleanup(self.served.process.send_signal, signal.SIGCONT)
+        browser.wait_for_text("no data for", ".pane-state")
+        self.served.process.send_signal(signal.SIGCONT)
+        browser.wait_for_text("running", ".pane-state")
+        self.assertEqual(browser.value("evod.server.state.silent_s"), 0)
+
     def test_commands_around_a_kill_happen_once(self):
         browser, count = self.browser, 40
         browser.run("""globalThis.done = [];

@@ -35,6 +35,29 @@ TEST_F(Answers, ShowTheParametersAfterAChange) {
     EXPECT_EQ(response.applied_tick(), 0);
 }
 
+TEST_F(Answers, WarnAboutSettingsWithoutEvolution) {
+    using parameters::ParameterValue;
+    const auto warnings_of = [&](const simulation::Command& command, const std::string& name) {
+        const v1::Response response = answer_to(command, name);
+        EXPECT_FALSE(response.has_status());
+        return std::vector<std::string>(response.warnings().begin(), response.warnings().end());
+    };
+    const std::vector<parameters::Assignment> only_elite{{"elite_count", ParameterValue{std::uint32_t{50}}}};
+    const std::vector<std::string> expected{
+        "no child is ever bred, because elite_count 50 is not below population_size 50"};
+    parameters::Parameters parameters;
+    parameters.elite_count = parameters.population_size = 50;
+    EXPECT_EQ(warnings_of(simulation::CreateWorld{"elite", parameters, {}, {}}, "create_world"), expected);
+    EXPECT_EQ(warnings_of(simulation::ResetWorld{"elite", {}, {}}, "reset_world"), expected);
+    EXPECT_TRUE(warnings_of(simulation::Run{"elite", {}}, "run").empty());
+    EXPECT_TRUE(warnings_of(simulation::ResetWorld{"w", {}, {}}, "reset_world").empty());
+    EXPECT_EQ(warnings_of(simulation::SetParameters{"w", only_elite, true, {}}, "set_parameters"), expected);
+    simulation::SetParameters planned{"w", only_elite, false, {}};
+    planned.at = parameters::PlannedMoment{.generation = 9, .tick = {}};
+    EXPECT_EQ(warnings_of(planned, "set_parameters"), expected);
+    EXPECT_EQ(warnings_of(simulation::SetParameters{"w", only_elite, false, {}}, "set_parameters"), expected);
+}
+
 TEST_F(Answers, ShowNoWorldAfterItsDeletion) {
     const v1::Response response = answer_to(simulation::DeleteWorld{"w"}, "delete_world");
     EXPECT_FALSE(response.has_status());

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 namespace evod::protocol {
 namespace {
 
@@ -62,6 +64,37 @@ TEST_F(Queries, WithRowsAreConvertedLater) {
     EXPECT_EQ(answer(request).history().generations_size(), 3) << "one finished generation on three islands";
     request.mutable_list_worlds();
     EXPECT_EQ(row_bytes(answer_query(request, laboratory, false, response)), 0u);
+}
+
+TEST_F(Queries, OfAPopulationContainTheFitnessIfItIsKnown) {
+    v1::Request request;
+    request.mutable_get_population()->set_world("w");
+    EXPECT_EQ(answer(request).population().objectives(), "") << "organisms still live";
+    const auto numbers_of = [&](const std::string& world) {
+        request.mutable_get_population()->set_world(world);
+        request.mutable_get_population()->set_first_organism(3);
+        const std::string bytes = answer(request).population().objectives();
+        std::vector<double> numbers(bytes.size() / sizeof(double));
+        std::memcpy(numbers.data(), bytes.data(), bytes.size());
+        return numbers;
+    };
+    simulation::CreateWorld create{.name = "sum", .parameters = {}, .seed = base::Seed{5}, .run_id = {1, 3}};
+    create.parameters.population_size = 5;
+    create.parameters.fitness = parameters::FitnessFunction::GeneSum;
+    EXPECT_TRUE(laboratory.apply(create));
+    const auto& genes = (*laboratory.find("sum"))->world.island(0).born().genes;
+    EXPECT_THAT(numbers_of("sum"),
+                testing::ElementsAre(genes.col(3).cast<double>().sum(), genes.col(4).cast<double>().sum()));
+    create.name = "given";
+    create.parameters.fitness = parameters::FitnessFunction::External;
+    create.parameters.external_bodies = false;
+    EXPECT_TRUE(laboratory.apply(create));
+    EXPECT_TRUE(laboratory.apply(simulation::Run{"given", 1}));
+    laboratory.advance(**laboratory.find("given"), executor);
+    EXPECT_TRUE(numbers_of("given").empty()) << "not rated yet";
+    EXPECT_TRUE(laboratory.apply(
+        simulation::SetFitness{.world = "given", .generation = 1, .island = 0, .fitness = {1, 2, 3, 4, 5}}));
+    EXPECT_THAT(numbers_of("given"), testing::ElementsAre(4, 5));
 }
 
 TEST_F(Queries, OfAHistoryListTheChangesOfParameters) {

@@ -1,9 +1,13 @@
 #include "proto/text/number_text.h"
 
+#include <boost/json.hpp>
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <string>
 
 namespace evod::text {
 namespace {
@@ -95,6 +99,17 @@ TEST(NumberText, IsRoundedLikePrintf) {
     }
     EXPECT_EQ(fixed(Limits::quiet_NaN(), 1), "nan");
     EXPECT_EQ(fixed(-Limits::infinity(), 1), "-inf");
+}
+
+TEST(NumberText, OfAFitnessIsTheSameInAllPrograms) {
+    std::ifstream file{EVOD_SOURCE_FOLDER "/proto/vectors/fitness.json"};
+    const std::string vectors(std::istreambuf_iterator<char>{file}, {});
+    const boost::json::value examples = boost::json::parse(vectors); // outlives the loop
+    for (const boost::json::value& vector : examples.as_array()) {
+        EXPECT_EQ(fitness_text(vector.at(0).to_number<double>()), vector.at(1).as_string()) << vector;
+    }
+    EXPECT_EQ(fitness_text(Limits::quiet_NaN()), "nan");
+    EXPECT_EQ(fitness_text(-Limits::infinity()), "-inf");
 }
 
 } // namespace

@@ -155,7 +155,7 @@ test("captions name the pick, the winner and the slot", () => {
     picks: [{ organism: 1, turns: 0.5 }],
   });
   assert.equal(breeding.caption(record, { stage: "picking", index: 0 }),
-    "Pick 1 of 1. The pointer stopped in the slot of organism 1 (rank 1, fitness 30, migrated from island 2), 75 % " +
+    "Pick 1 of 1. The pointer stopped in the slot of organism 1 (rank 1, fitness 30.0, migrated from island 2), 75 % " +
     "of the wheel.");
 });
 
@@ -168,8 +168,8 @@ test("captions distinguish children, survivors and elite", () => {
   });
   const of = (index) => breeding.caption(record, { stage: "breeding", index });
   assert.equal(of(0),
-    "Organism 0 of the next generation: of the elite, organism 1 (rank 1, fitness 30), kept unchanged.");
-  assert.equal(of(1), "Organism 1 of the next generation: a survivor, organism 0 (rank 2, fitness 10).");
+    "Organism 0 of the next generation: of the elite, organism 1 (rank 1, fitness 30.0), kept unchanged.");
+  assert.equal(of(1), "Organism 1 of the next generation: a survivor, organism 0 (rank 2, fitness 10.0).");
   assert.equal(of(2), "Organism 2 of the next generation: a child of organisms 0 and 1, 1 mutation.");
 });
 

@@ -108,9 +108,9 @@ test("arrow keys follow parents and children", () => {
 test("a text names kind, parents, fitness and offspring", () => {
   const ancestors = lineage(rows);
   assert.equal(text.family_texts.organism(ancestors.get("3/0/9")),
-    "Organism 9 of generation 3: a child of 4 and 1, fitness 30; 2 children and 1 copy in the next generation.");
+    "Organism 9 of generation 3: a child of 4 and 1, fitness 30.0; 2 children and 1 copy in the next generation.");
   assert.equal(text.family_texts.organism(ancestors.get("1/0/2")),
-    "Organism 2 of generation 1: without known parents, fitness 10; 2 children and 1 copy in the next generation.");
+    "Organism 2 of generation 1: without known parents, fitness 10.0; 2 children and 1 copy in the next generation.");
 });
 
 // Generation 3 has organisms 0 to 3. All but 3 descend from 4 of generation 2; 3 descends from 5; both descend from 7.

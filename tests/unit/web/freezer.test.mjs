@@ -24,18 +24,38 @@ test("random floats are the same after writing and reading", () => {
   }
 });
 
+test("a file of another program is read as evod reads it", () => {
+  const expected = { gene_names: ["normal_speed", "turn"], islands: [Float32Array.of(1.5, 2), Float32Array.of(3, -4e-3, 5, 6)] };
+  for (const text of [
+    "island,organism,normal_speed,turn\n7,0,3,-4e-3\n2,0,1.5,2\n7,0,5,6\n",
+    "turn,island,normal_speed,organism\n2,0,1.5,0\n-4e-3,1,3,0\n6,1,5,1\n",
+    "\ufeffisland;organism;normal_speed;turn\r\n0;0;1,5;2\r\n1;0;3;-4e-3\r\n;;;\r\n1;1;5;6\r\n",
+    "island\torganism\tnormal_speed\tturn\n0\t0\t1,5\t2\n1\t0\t3\t-4e-3\n1\t1\t5\t6\n",
+    '"","island","organism","normal_speed","turn"\n"1",0,0,1.5,2\n"2",1,0,3,"-4e-3"\n"3",1, 1 ,5,6\n',
+    "island , organism, normal_speed,turn\n\n0,0, 1.5,2 \n1,0,3,-4e-3\n,,,\n1,1,5,6"]) {
+    assert.deepEqual(page.read_population(text), expected, text);
+  }
+});
+
+test("a choice is read as a text and as an index", () => {
+  const choices = new Map([["act", ["relu", "tanh", "1", "16"]]]);
+  assert.deepEqual(page.read_population("island,organism,act\n0,0,tanh\n0,1,0\n0,2,1\n0,3,16\n", choices).islands, [Float32Array.of(1, 0, 1, 3)]);
+  assert.match(page.read_population("island,organism,act\n0,0,gelu\n", choices), /^line 2: got "0,0,gelu", allowed: a number, or one of relu, tanh, 1, 16 \(column act\)$/);
+});
+
 test("a wrong file names the line, what it contains and what is allowed", () => {
   for (const [text, problem] of [
-    ["", /^line 1: got "", allowed: island,organism as the first columns, and a column with a name for each gene$/],
+    ["", /^line 1: got "", allowed: the heading island,organism and the names of the genes, in any order, each name once$/],
     ["island,organism\n0,0\n", /^line 1: /],
     [`${heading},\n`, /^line 1: /],
+    [`${heading},turn,turn\n`, /^line 1: /],
     [`${heading}\n`, /^there is no organism in it$/],
-    [`${heading}\n0,0,1,2,3,4,5\n`, /^line 2: got "0,0,1,2,3,4,5", allowed: the numbers of island and organism, and 6 genes$/],
-    [`${heading}\n0,0,1,2,3,4,5,nan\n`, /^line 2: /],
+    [`${heading}\n0,0,1,2,3,4,5\n`, /^line 2: got "0,0,1,2,3,4,5", allowed: an island, an organism and 6 genes, so 8 cells, not 7$/],
+    [`${heading}\n0,0,1,5,2,3,4,5,6\n`, /so 8 cells, not 9; decimal commas need semicolons/],
+    [`${heading}\n0,0,1,2,3,4,5,nan\n`, /^line 2: .*, allowed: a number \(column poison_radius\)$/],
+    [`${heading}\n\n0,x,1,2,3,4,5,6\n`, /^line 3: .*, allowed: a whole number \(column organism\)$/],
     [`${heading}\n0,0,1,2,3,4,5,1e39\n`, /^line 2: /],
-    [`${heading}\n"0,0,${row}\n`, /^line 2: a cell in quotation marks does not end as it must$/],
-    [`${heading}\n0,1,${row}\n`, /allowed: organism 0 of island 0/],
-    [`${heading}\n0,0,${row}\n2,0,${row}\n`, /^line 3: .*, allowed: organism 1 of island 0, or organism 0 of the next island$/]]) {
+    [`${heading}\n"0,0,${row}\n`, /^line 2: a cell in quotation marks does not end as it must$/]]) {
     assert.match(page.read_population(text), problem);
   }
 });

@@ -252,9 +252,18 @@ test("a dry run marks values and changes nothing", () => {
   const { fields, number } = edits.check("w", { tick: 9 });
   assert.deepEqual([fields.dry_run, fields.at_tick, edits.busy], [true, 9, false]);
   const refusal = { message: "no", violations: [{ field: "set_parameters.mutation_chance", allowed: "0 to 1", got: "3" }] };
-  edits.checked(number, refusal);
+  edits.checked(number, { refusal });
   assert.equal(edits.parameters[0].violation.allowed, "0 to 1");
   assert.equal(edits.problem, "");
+});
+
+test("warnings of a dry run stay until the next edit", () => {
+  const edits = made();
+  edits.edit(0, { real: 0 });
+  edits.checked(edits.check("w", null).number, { warnings: ["nothing can evolve"] });
+  assert.deepEqual(edits.warnings, ["nothing can evolve"]);
+  edits.edit(0, { real: 0.5 });
+  assert.deepEqual(edits.warnings, []);
 });
 
 test("a dry run of earlier edits is ignored", () => {
@@ -262,6 +271,6 @@ test("a dry run of earlier edits is ignored", () => {
   edits.edit(0, { real: 3 });
   const { number } = edits.check("w", null);
   edits.edit(0, { real: 0.5 });
-  edits.checked(number, { message: "no", violations: [{ field: "set_parameters.mutation_chance", allowed: "0 to 1", got: "3" }] });
+  edits.checked(number, { refusal: { message: "no", violations: [{ field: "set_parameters.mutation_chance", allowed: "0 to 1", got: "3" }] } });
   assert.equal(edits.parameters[0].violation, null);
 });

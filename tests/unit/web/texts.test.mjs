@@ -24,6 +24,14 @@ test("three digits are enough for a glance", () => {
   assert.equal(page.with_sign(1.20817), "+1.21");
 });
 
+test("a fitness has the text of all programs", () => {
+  for (const [fitness, text] of JSON.parse(readFileSync(new URL("../../../proto/vectors/fitness.json", import.meta.url)))) {
+    assert.equal(page.plain_fitness(fitness), text);
+  }
+  assert.equal(page.fitness_text(-1234.56), "−1,234.6");
+  assert.equal(page.fitness_text(NaN), "–");
+});
+
 test("durations have the format of all programs", () => {
   for (const [seconds, text] of [[0, "0.0 s"], [59.96, "60.0 s"], [245, "4:05 min"], [119.9999, "2:00 min"], [7200, "2:00:00 h"]]) {
     assert.equal(page.duration(seconds), text);

@@ -235,7 +235,7 @@ class World(ParameterAttributes, WorldQueries):
         **more: object,
     ) -> Parameters:
         """Sets parameters: ``world.set(mutation_chance=0.1, selection="tournament")``. If one value is refused, sets
-        none.
+        none. Warns about settings with which nothing can evolve (UserWarning), as `reset` and `Lab.create_world` do.
 
         Parameters
         ----------

@@ -21,10 +21,16 @@ function quoted(cell: string): string {
   return /[",\r\n]/.test(cell) ? `"${cell.replaceAll('"', '""')}"` : cell;
 }
 
+/** Returns what separates the cells of a text: a semicolon or tab if its first line contains one and no comma. */
+export function separator_of(text: string): string {
+  const heading = text.slice(0, end_of_line(text, 0));
+  return [",", ";", "\t"].find((separator) => heading.includes(separator)) ?? ",";
+}
+
 /** Returns the records of a text one after another, because those of a long text need much memory; ends with an error
  *  if the text is not CSV. Empty lines are skipped, and so are lines with # before the first record, which are
  *  comments. */
-export function* csv_records(text: string): Generator<CsvRecord|CsvError, void> {
+export function* csv_records(text: string, separator = ","): Generator<CsvRecord|CsvError, void> {
   let is_first = true;
   let at = text.startsWith("\ufeff") ? 1 : 0;
   for (let line = 1; at < text.length;) {
@@ -35,11 +41,11 @@ export function* csv_records(text: string): Generator<CsvRecord|CsvError, void> 
       ++line;
     } else if (!whole.includes('"')) {
       is_first = false;
-      yield {line, cells: whole.split(",")};
+      yield {line, cells: whole.split(separator)};
       at = end + 1;
       ++line;
     } else {
-      const read = quoted_record(text, at, line);
+      const read = quoted_record(text, at, line, separator);
       if (read instanceof CsvError) {
         yield read;
         return;
@@ -58,7 +64,8 @@ function end_of_line(text: string, at: number): number {
 }
 
 /** Reads a record with quotes that begins at an index. Returns its cells, and where the next record begins. */
-function quoted_record(text: string, at: number, line: number): {cells: string[]; at: number; line: number}|CsvError {
+function quoted_record(text: string, at: number, line: number, separator: string):
+  {cells: string[]; at: number; line: number}|CsvError {
   const cells: string[] = [];
   for (;;) {
     let cell = "";
@@ -75,14 +82,14 @@ function quoted_record(text: string, at: number, line: number): {cells: string[]
         cell += text[at];
       }
     } else {
-      const end = /[,\r\n]|$/g;
+      const end = new RegExp(`[${separator}\\r\\n]|$`, "g");
       end.lastIndex = at;
       const to = end.exec(text)!.index;
       cell = text.slice(at, to);
       at = to;
     }
     cells.push(cell);
-    if (text[at] === ",") {
+    if (text[at] === separator) {
       ++at;
       continue;
     }

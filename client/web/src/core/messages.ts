@@ -29,6 +29,7 @@ export interface ConnectionState {
   phase: "connecting"|"open"|"lost"|"refused"; // lost: tries again by itself; refused: a user has to act
   message: string; // why, as a sentence; empty in "open"
   code: string; // "CODE_UNAUTHENTICATED" …; empty if there is none
+  silent_s: number; // the server has sent nothing for so long although a world runs; 0: it sends
   welcome: Welcome|null; // of the present or the last session
 }
 
@@ -81,8 +82,10 @@ export interface Camera {
 export interface PopulationColumns {
   generation: number;
   island: number;
+  organism_count: number; // of the island; the columns may contain only the first ones
   gene_names: string[];
   genes: Float32Array[]; // one per gene
+  fitness: Float64Array|null; // null: not known
   founders: Uint32Array|null;
   choices: Uint8Array|null;
   forces: Float32Array[]|null; // x, y

@@ -1062,7 +1062,8 @@ export interface Response extends Partial<ResponseAnswers> {
   status?: Status;
   /** Commands only: the change holds from this tick, counted from the start of the run. */
   applied_tick?: number;
-  /** CreateWorld, ResetWorld and SetParameters: sentences about values that are allowed, but with which nothing can evolve. */
+  /** CreateWorld, ResetWorld, SetParameters and GetParameters: sentences about requested values that are allowed, but with
+   *  which nothing can evolve. */
   warnings?: string[];
 }
 
@@ -1668,7 +1669,7 @@ export interface Population {
   /** u32 */
   poison_eaten?: Uint8Array;
   /** f64: the given fitness of organisms of a generation that has been rated, one column per objective (parameter
-   *  `objectives`); otherwise empty. */
+   *  `objectives`); the fitness of organisms whose genes alone determine it; otherwise empty. */
   objectives?: Uint8Array;
 }
 

@@ -4,9 +4,12 @@
 //   island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius
 //   0,0,103.2,97.5,…
 //
-// There is a column for each gene. Islands and organisms are numbered from 0, in order. Each gene is a text that
-// parses to the same 32-bit float.
-import {csv_line, csv_records, CsvError} from "../core/csv";
+// There is a column for each gene. evod numbers islands and organisms from 0, in order. Each gene is a text that parses
+// to the same 32-bit float. A gene that is a choice may be the text of the choice.
+//
+// A file that another program has changed may have what population_csv.h describes: columns in any order, blanks,
+// quotes, empty rows, other separators, a decimal comma, and islands that need not count from 0.
+import {csv_line, csv_records, CsvError, separator_of} from "../core/csv";
 import {freezer_texts} from "../texts/freezer";
 
 export interface Population {
@@ -14,6 +17,8 @@ export interface Population {
   islands: Float32Array[]; // the genes organism by organism
 }
 
+const body_genes: readonly string[] =
+  ["normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"];
 const genes_max = 10_000;
 const shown_characters_max = 80; // of a wrong line
 const number_pattern = /^-?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
@@ -29,54 +34,102 @@ export function genes_of_organism(population: Population, island: number, organi
   return population.islands[island]!.subarray(organism * count, (organism + 1) * count);
 }
 
-/** Returns the population in a file; or a sentence that names the wrong line, without a full stop. */
-export function read_population(text: string): Population|string {
-  const islands: number[][] = [];
-  let gene_names: string[]|null = null;
-  for (const record of csv_records(text)) {
+interface Columns {
+  island: number;
+  organism: number;
+  count: number;
+  genes: number[]; // in the order of gene_names
+  gene_names: string[];
+}
+
+/** The texts of the genes that are choices, by name. */
+export type GeneChoices = ReadonlyMap<string, readonly string[]>;
+
+/** Returns where the columns are; null if this is not a heading. A first column without a name is ignored: R writes the
+ *  names of the rows there. */
+function read_heading(cells: readonly string[]): Columns|null {
+  const names = cells.map((cell) => cell.trim()), named = names[0] === "" ? names.slice(1) : names;
+  const island = names.indexOf("island"), organism = names.indexOf("organism");
+  const columns = names.map((_, i) => i).filter((i) => names[i] !== "" && i !== island && i !== organism);
+  const is_wrong = island < 0 || organism < 0 || named.includes("") || new Set(named).size !== named.length;
+  if (is_wrong || columns.length === 0 || columns.length > genes_max) {
+    return null;
+  }
+  const place = (name: string): number => body_genes.includes(name) ? body_genes.indexOf(name) : body_genes.length;
+  const genes = columns.sort((a, b) => place(names[a]!) - place(names[b]!) || a - b); // those of the body first
+  return {island, organism, count: cells.length, genes, gene_names: genes.map((column) => names[column]!)};
+}
+
+/** Returns a gene; NaN if the cell is neither a 32-bit float nor a choice. The index of a choice has precedence over a
+ *  choice with the same text, because evod writes the index. */
+function read_gene(cell: string, separator: string, choices: readonly string[]): number {
+  const text = cell.trim(), choice = choices.indexOf(text);
+  const number = separator === "," ? text : text.replaceAll(",", ".");
+  const value = number_pattern.test(number) ? Math.fround(Number(number)) : NaN;
+  return choice >= 0 && choices[value] === undefined ? choice : value;
+}
+
+/** Returns the first wrong column of a row, and adds its genes to `genes`; "" if none is wrong. */
+function read_row(
+  cells: readonly string[], columns: Columns, separator: string, choices: GeneChoices, genes: number[]): string {
+  for (const name of ["island", "organism"] as const) {
+    if (!/^\d+$/.test(cells[columns[name]]!.trim())) {
+      return name;
+    }
+  }
+  for (const [i, column] of columns.genes.entries()) {
+    const name = columns.gene_names[i]!, gene = read_gene(cells[column]!, separator, choices.get(name) ?? []);
+    if (!Number.isFinite(gene)) {
+      return name;
+    }
+    genes.push(gene);
+  }
+  return "";
+}
+
+/** Returns the population in a file; or a sentence that names the wrong line and column, without a full stop.
+ *
+ *  choices  of the shown world */
+export function read_population(text: string, choices: GeneChoices = new Map()): Population|string {
+  const islands = new Map<number, number[]>(), separator = separator_of(text);
+  let columns: Columns|null = null;
+  for (const record of csv_records(text, separator)) {
     if (record instanceof CsvError) {
       return freezer_texts.not_csv(record.line);
     }
     const {line, cells} = record;
     const wrong = (allowed: string): string =>
       freezer_texts.wrong_line(line, csv_line(cells).slice(0, shown_characters_max), allowed);
-    if (gene_names === null) {
-      const [island, organism, ...names] = cells;
-      const is_heading = island === "island" && organism === "organism" && names.length > 0;
-      if (!is_heading || names.length > genes_max || names.includes("")) {
+    if (columns === null) {
+      columns = read_heading(cells);
+      if (columns === null) {
         return wrong(freezer_texts.heading);
       }
-      gene_names = names;
       continue;
     }
-    const genes: number[] = [];
-    const are_numbers = /^\d+$/.test(cells[0]!) && /^\d+$/.test(cells[1] ?? "");
-    for (let gene = 2; are_numbers && gene < cells.length; ++gene) {
-      const value = number_pattern.test(cells[gene]!) ? Math.fround(Number(cells[gene])) : NaN;
-      if (Number.isFinite(value)) {
-        genes.push(value);
-      }
+    if (cells.every((cell) => cell.trim() === "")) {
+      continue; // spreadsheet programs write empty rows
     }
-    if (!are_numbers || cells.length !== gene_names.length + 2 || genes.length !== gene_names.length) {
-      return wrong(freezer_texts.row(gene_names.length));
+    if (cells.length !== columns.count) {
+      return wrong(freezer_texts.row(columns.genes.length, columns.count, cells.length));
     }
-    const island = Number(cells[0]), organism = Number(cells[1]);
-    if (island === islands.length && organism === 0) {
-      islands.push([]);
+    const genes: number[] = [], wrong_column = read_row(cells, columns, separator, choices, genes);
+    if (wrong_column !== "") {
+      return wrong(freezer_texts.cell(wrong_column, choices.get(wrong_column) ?? []));
     }
-    const last = Math.max(islands.length - 1, 0), next = (islands[last]?.length ?? 0) / gene_names.length;
-    if (islands.length === 0 || island !== last || organism !== next) {
-      return wrong(freezer_texts.order(next, last));
-    }
+    const island = Number(cells[columns.island]!), there = islands.get(island) ?? [];
+    islands.set(island, there);
     for (const gene of genes) {
-      islands[last]!.push(gene);
+      there.push(gene);
     }
   }
-  if (gene_names === null) {
+  if (columns === null) {
     return freezer_texts.wrong_line(1, "", freezer_texts.heading);
   }
-  return islands.length === 0 ? freezer_texts.no_organism :
-                                {gene_names, islands: islands.map((genes) => Float32Array.from(genes))};
+  const in_order = [...islands.keys()].sort((a, b) => a - b);
+  return islands.size === 0 ?
+    freezer_texts.no_organism :
+    {gene_names: columns.gene_names, islands: in_order.map((island) => Float32Array.from(islands.get(island)!))};
 }
 
 /** Returns the text of a file with these genes. */

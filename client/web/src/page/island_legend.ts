@@ -44,7 +44,8 @@ export class IslandLegend {
     const scale = scale_of(world);
     const {title, entries} = entries_of(world);
     const is_known = !shows_all || (world.look.colour_by === "health" && world.feed.drawing?.density === null);
-    this.element.hidden = world.feed.drawing === null || !is_known || (scale === null && entries.length === 0);
+    const is_empty = scale === null && entries.length === 0;
+    this.element.hidden = !world.has_bodies || world.feed.drawing === null || !is_known || is_empty;
     if (this.element.hidden) {
       return;
     }

@@ -20,6 +20,7 @@ export class Legend {
   }
 
   refresh(world: ViewedWorld): void {
+    this.element.hidden = !world.has_bodies;
     set_attribute(this.element, "data-skin", world.look.skin);
     set_attribute(this.element, "data-background", world.look.background);
     set_text(this.#organism, legend_texts[world.look.skin](world.feed.drawing?.health_max ?? 100));

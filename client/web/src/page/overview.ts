@@ -1,5 +1,6 @@
-// Overview: how the shown world does: its healthiest organisms and its live fitness curve. It is the first panel of the
-// column.
+// Overview: how the shown world does: its healthiest organisms, its live fitness curve and the best solution. It is the
+// first panel of the column.
+import {BestSolution} from "../panels/best_solution";
 import {FitnessCurve, show_generation} from "../plots/fitness_curve";
 import {column_texts as texts} from "../texts/column";
 import {set_attribute} from "../widgets/controls";
@@ -14,19 +15,23 @@ export class Overview implements Panel {
   readonly element: HTMLElement;
   readonly #context: PanelContext;
   readonly #healthiest = h("span", {});
+  readonly #healthiest_line: HTMLElement;
   readonly #buttons: readonly HTMLButtonElement[]; // of the healthiest organisms
   readonly #curve: FitnessCurve;
+  readonly #best: BestSolution;
 
   /** evolution: the button that shows it. */
   constructor(context: PanelContext, evolution: HTMLElement) {
     this.#context = context;
     this.#curve = new FitnessCurve((generation) => void show_generation(context, generation));
+    this.#best = new BestSolution(context);
     this.#buttons = Array.from(
       {length: named},
       (_, i) => h("button", {type: "button", class: "link", onclick: () => this.#select_healthiest(i)}));
+    this.#healthiest_line = h("p", {class: "healthiest"}, this.#healthiest, ...this.#buttons);
     this.element =
-      h("div", {class: "overview"}, h("p", {class: "healthiest"}, this.#healthiest, ...this.#buttons), evolution,
-        h("div", {class: "curve"}, this.#curve.element));
+      h("div", {class: "overview"}, this.#healthiest_line, evolution,
+        h("div", {class: "curve"}, this.#curve.element), this.#best.element);
   }
 
   refresh(): void {
@@ -38,13 +43,15 @@ export class Overview implements Panel {
       set_attribute(button, "aria-label", organism ? texts.organism_name(organism.id, organism.health) : null);
       set_attribute(button, "aria-pressed", String(organism !== undefined && organism.id === selected));
     });
+    this.#healthiest_line.hidden = !world.has_bodies;
     set_text(
       this.#healthiest,
-      healthiest.length > 0                   ? texts.healthiest :
+        healthiest.length > 0                 ? texts.healthiest :
         !snapshot                             ? "" :
         (snapshot.live?.alive_count ?? 0) > 0 ? texts.zoom_in :
                                                 texts.none_alive);
     this.#curve.update(world);
+    this.#best.update(world);
   }
 
   #select_healthiest(i: number): void {

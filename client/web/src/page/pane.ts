@@ -15,6 +15,7 @@ import {IslandLegend} from "./island_legend";
 import {IslandTiles} from "./island_tiles";
 import {PaneTool} from "./pane_tool";
 import {PaneView} from "./pane_view";
+import {PopulationView} from "./population_view";
 import {Picker, type Picked} from "./picker";
 
 export interface PaneOptions {
@@ -44,6 +45,7 @@ export class Pane {
   readonly #canvas =
     h("canvas", {class: "pane-canvas", tabindex: 0, role: "application", "aria-roledescription": pane_texts.kind});
   readonly #legend = new IslandLegend();
+  readonly #population: PopulationView;
   readonly #hint = h("div", {class: "pane-hint", "aria-hidden": "true", hidden: true});
   readonly #note = h("p", {class: "pane-note", role: "status", hidden: true});
   readonly #options: PaneOptions;
@@ -61,9 +63,11 @@ export class Pane {
     this.#world = options.world;
     this.view = new PaneView(this.#world, (view) => options.on_view?.(view, "moved"));
     this.tool = new PaneTool(this.#world, () => this.#tool_changed());
+    this.#population = new PopulationView(this.#world);
     this.tiles = new IslandTiles(this.#world, (had_focus) => this.#tiles_changed(had_focus));
     this.element =
       h("div", {class: "pane"}, this.#canvas, this.#legend.element, this.#hint, this.#note, this.tiles.element,
+        this.#population.element,
         h("div", {class: "pane-focus"}));
     this.#picker = new Picker(this.#world.feed.pane, (message) => this.#world.server.post(message));
     this.#gestures = new Gestures(this.#canvas, this.#target());
@@ -87,6 +91,7 @@ export class Pane {
   close(): void {
     this.#gestures.close();
     this.#ends.forEach((end) => end());
+    this.#population.close();
     this.#world.server.post({kind: "close_pane", pane: this.#world.feed.pane});
     this.element.remove();
   }
@@ -114,6 +119,8 @@ export class Pane {
       pane_texts.alive(snapshot.generation, snapshot.live?.alive_count ?? snapshot.counts.organisms);
     set_attribute(
       this.#canvas, "aria-label", shown === "" ? pane_texts.no_world : pane_texts.island(island, shown, alive));
+    this.#canvas.hidden = !this.#world.has_bodies;
+    this.#population.refresh();
     this.#legend.refresh(this.#world, this.tiles.is_on);
     this.tiles.refresh(this.view.size, this.view.island);
     this.#refresh_hint(drawing);

@@ -125,11 +125,12 @@ export class PaneArea {
     const is_running = world.control.state === "RUN_STATE_RUNNING", with_rate = this.pane.view.size.width > narrow;
     const place = snapshot && place_and_speed_text(world.name, snapshot, world.control.speed, is_running && with_rate);
     set_text(this.#place, place ?? world.name);
-    const is_connected = server.state.phase === "open";
-    set_text(this.#state, this.#state_text() + (is_connected && is_running && info?.slowed ? pane_texts.slower : ""));
-    set_attribute(this.#state, "data-state", is_connected && is_running ? "running" : "stopped");
+    const is_connected = server.state.phase === "open", is_silent = server.state.silent_s > 0;
+    const runs_now = is_connected && is_running && !is_silent;
+    set_text(this.#state, this.#state_text() + (runs_now && info?.slowed ? pane_texts.slower : ""));
+    set_attribute(this.#state, "data-state", runs_now ? "running" : "stopped");
     this.#refresh_islands();
-    const reading = world.feed.reading?.info, texts = reading ? statistics_texts(reading) : [];
+    const reading = world.feed.reading?.info, texts = reading ? statistics_texts(reading, world.has_bodies) : [];
     while (this.#foot.children.length > texts.length) {
       this.#foot.lastElementChild!.remove();
     }
@@ -150,13 +151,16 @@ export class PaneArea {
     if (!snapshot && !info) {
       return "";
     }
+    if (state === "RUN_STATE_RUNNING" && server.state.silent_s > 0) {
+      return pane_texts.silent(server.state.silent_s);
+    }
     return at_end ? pane_texts.end_of_replay :
                     state_word(state, info?.storage ?? server.storage, info?.awaited_fitness !== undefined);
   }
 
   #refresh_islands(): void {
     const {tiles} = this.pane, {island} = this.world;
-    this.#islands.hidden = tiles.island_count < 2;
+    this.#islands.hidden = tiles.island_count < 2 || !this.world.has_bodies;
     set_attribute(this.#islands, "aria-pressed", String(tiles.is_on));
     const help = tiles.is_on ? tile_texts.hide_help(island) :
       tiles.can_return       ? tile_texts.back_help :

@@ -1,6 +1,7 @@
-// Summary: the top of the column: which world is shown, what its organisms try to do, what the marks mean, taking part,
-// and run control.
+// Summary: the top of the column: which world is shown, what its organisms try to do, warnings about its settings,
+// what the marks mean, taking part, and run control.
 import {column_texts as texts} from "../texts/column";
+import {warning_text} from "../texts/parameters";
 import {session_text} from "../texts/users";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -24,6 +25,7 @@ export class Summary {
     onchange: () => this.#context.world().choose_island(Number(this.#island.value))
   });
   readonly #experiment = h("p", {class: "experiment"});
+  readonly #warnings = h("p", {class: "warning lines", role: "status"});
   readonly #legend = new Legend();
   readonly #run_bar: RunBar;
   readonly #part: HTMLButtonElement;
@@ -42,7 +44,8 @@ export class Summary {
       "div", {class: "summary"},
       h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,
         ...head),
-      this.#experiment, this.#legend.element, h("div", {class: "row part"}, this.#part, this.#part_text, this.#session),
+      this.#experiment, this.#warnings, this.#legend.element,
+      h("div", {class: "row part"}, this.#part, this.#part_text, this.#session),
       this.#run_bar.element, tools.element);
   }
 
@@ -52,6 +55,7 @@ export class Summary {
     const is_damaged = server.worlds.damage_of(world.name) !== "";
     const state_text = is_damaged ? texts.is_damaged : world.name ? texts.loading : texts.none_open;
     set_text(this.#experiment, world.parameters.experiment || state_text);
+    set_text(this.#warnings, world.parameters.set === null ? "" : warning_text(world.parameters.warnings));
     this.#legend.refresh(world);
     this.#run_bar.refresh();
     this.#part.hidden = !server.access.may_take_part;
@@ -60,10 +64,10 @@ export class Summary {
     const part_text = state.phase !== "open" ? texts.no_connection :
       !server.access.may_take_part                  ? texts.is_viewer :
       taking_part                            ? texts.takes_part :
-                                               texts.watches;
+                                               texts.watches(world.has_bodies);
     set_text(this.#part_text, part_text);
     set_text(this.#session, state.phase === "open" ? session_text(state.welcome) : "");
-    this.#tools.refresh(taking_part);
+    this.#tools.refresh(taking_part && world.has_bodies);
   }
 
   #refresh_choices(): void {

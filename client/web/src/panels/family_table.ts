@@ -3,7 +3,7 @@
 import type {CommonAncestors} from "../family/common_ancestors";
 import type {FamilyTree, Spot} from "../family/spot";
 import {family_texts} from "../texts/family";
-import {three_digits, with_separators} from "../texts/numbers";
+import {fitness_text, with_separators} from "../texts/numbers";
 import {set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {button} from "../widgets/form";
@@ -89,7 +89,7 @@ export class FamilyTable {
       "tr", {}, h("th", {scope: "row"}, name(ancestor.organism, ancestor.island)),
       h("td", {}, family_texts.kinds[ancestor.origin] ?? ancestor.origin),
       h("td", {}, ancestor.parents.map((parent) => name(parent.organism, parent.island)).join(", ")),
-      h("td", {class: "number"}, ancestor.fitness === null ? "" : three_digits(ancestor.fitness)),
+      h("td", {class: "number"}, ancestor.fitness === null ? "" : fitness_text(ancestor.fitness)),
       h("td", {class: "number"}, with_separators(ancestor.child_count)),
       h("td", {class: "number"}, with_separators(ancestor.kept_count)), h("td", {}, common));
   }

@@ -18,6 +18,7 @@ import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {hint, row, text_field} from "../widgets/form";
 import {accept_drops, open_button} from "../widgets/files";
+import {gene_choices} from "../world/gene_axes";
 import {name_characters_max, name_of_file} from "../world/names";
 import type {Panel, PanelContext} from "../world/panel_context";
 
@@ -191,10 +192,10 @@ export class FreezerPanel implements Panel {
 
   async #open(files: readonly File[]): Promise<void> {
     await this.#act(async () => {
-      const problems: string[] = [];
+      const problems: string[] = [], choices = gene_choices(this.#context.world().info);
       for (const file of files) {
         const read = file.size > file_bytes_max ? texts.file_too_large(file.size, file_bytes_max) :
-                                                  read_population(await file.text());
+                                                  read_population(await file.text(), choices);
         if (typeof read === "string") {
           problems.push(texts.of_file(file.name, read));
         } else {

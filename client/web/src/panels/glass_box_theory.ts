@@ -5,7 +5,7 @@ import {copies_so_far, type Progress} from "../breeding/progress";
 import {type BreedingRecord, rows_kept_max} from "../breeding/record";
 import {deviation_of, type Prediction, predictions, selection_of} from "../breeding/theory";
 import {glass_box_texts} from "../texts/glass_box";
-import {three_digits, with_separators} from "../texts/numbers";
+import {fitness_text, with_separators} from "../texts/numbers";
 import {h} from "../widgets/dom";
 import {hint} from "../widgets/form";
 import {draw_copies} from "./glass_box_drawings";
@@ -56,7 +56,7 @@ function organism_table(comparison: Comparison, copies: readonly number[], compl
                  .map(
                    (organism, rank) => h(
                      "tr", {}, cell(with_separators(rank + 1)), cell(String(organism)),
-                     cell(three_digits(comparison.fitness[rank]!)),
+                     cell(fitness_text(comparison.fitness[rank]!)),
                      cell(glass_box_texts.table_expected(comparison.expected[rank]!, comparison.standard_error[rank]!)),
                      cell(with_separators(copies[rank]!)),
                      cell(complete ? glass_box_texts.table_off(comparison.deviations[rank]!) : "")));

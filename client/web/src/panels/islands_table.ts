@@ -1,7 +1,7 @@
 // IslandsTable: the islands of the shown world with their statistics. Asks for them while it is shown: events do not
 // report the progress of a generation.
 import type {Statistics} from "../core/protocol";
-import {tenths} from "../texts/numbers";
+import {fitness_text, tenths} from "../texts/numbers";
 import {worlds_texts as texts} from "../texts/worlds";
 import {h, set_text} from "../widgets/dom";
 import type {PanelContext} from "../world/panel_context";
@@ -51,7 +51,7 @@ export class IslandsTable {
       act: () => this.#context.world().choose_island(island),
       cells: [
         live ? texts.alive(live.alive_count ?? 0, live.organism_count ?? 0) : "",
-        live ? tenths(live.health_mean ?? 0) : "", last ? tenths(last.fitness_best ?? 0) : ""
+        live ? tenths(live.health_mean ?? 0) : "", last ? fitness_text(last.fitness_best ?? 0) : ""
       ],
     };
   }

@@ -160,13 +160,12 @@ export class ParameterExchange {
     if (check === null) {
       return;
     }
-    let refusal: Refusal|null = null;
     try {
-      await this.#context.server.request("set_parameters", check.fields);
+      const {warnings = []} = await this.#context.server.respond("set_parameters", check.fields);
+      this.edits.checked(check.number, {warnings});
     } catch (error) {
-      refusal = error as Refusal;
+      this.edits.checked(check.number, {refusal: error as Refusal});
     }
-    this.edits.checked(check.number, refusal);
     this.#view.answered();
   }
 

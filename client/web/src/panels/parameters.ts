@@ -3,7 +3,7 @@
 //
 // ParameterExchange has the edits and sends the requests, ParameterList shows the parameters. While the user edits, the
 // server checks the edits with dry runs, so that a wrong value is marked before it is applied.
-import {parameters_texts as texts} from "../texts/parameters";
+import {parameters_texts as texts, warning_text} from "../texts/parameters";
 import {undo_texts} from "../texts/undo";
 import {set_enabled} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
@@ -33,6 +33,7 @@ export class ParametersPanel implements Panel {
   readonly #redo_button = button(undo_texts.redo, () => void undo(this.#context, "redo"));
   readonly #at_once = h("input", {type: "checkbox", onchange: () => this.touch()});
   readonly #reason = h("p", {class: "warning"});
+  readonly #warnings = h("p", {class: "warning lines", role: "status"});
   readonly #problem = h("p", {class: "error", role: "alert"});
   readonly #status = h("p", {class: "hint", role: "status"});
   #changed = true; // the elements do not show the present state yet
@@ -54,7 +55,7 @@ export class ParametersPanel implements Panel {
         h("div", {class: "parameters-head"}, this.#list.search,
           row(this.#apply_button, this.#when.element, this.#discard_button, this.#undo_button, this.#redo_button,
             check(this.#at_once, texts.at_once, texts.at_once_help)),
-          this.#problem, this.#reason, this.#status),
+          this.#problem, this.#reason, this.#warnings, this.#status),
         this.#planned.element, this.#list.element, this.#list.nothing_found);
     context.server.events.listen((event) => {
       this.#changed = this.#exchange.take_event(event) || this.#changed;
@@ -155,6 +156,7 @@ export class ParametersPanel implements Panel {
     }
     this.#when.update(may);
     set_text(this.#problem, edits.problem === "" ? "" : `${edits.problem}.`);
+    set_text(this.#warnings, warning_text(edits.warnings));
     set_text(
       this.#status,
       why_not       ? "" :

@@ -5,7 +5,7 @@ import {running_mean} from "./plot_layout";
 import {marks_of} from "./change_marks";
 import {HistoryTable} from "./history_table";
 import type {Column} from "./history_table";
-import {significant} from "../texts/numbers";
+import {fitness_text} from "../texts/numbers";
 import {plot_texts} from "../texts/plot";
 import type {PanelContext} from "../world/panel_context";
 import type {ViewedWorld} from "../world/world";
@@ -62,7 +62,7 @@ export class FitnessCurve {
         x,
         y: running_mean(raw, generations_in_mean),
         raw,
-        newest: significant(raw[raw.length - 1]!)
+        newest: fitness_text(raw[raw.length - 1]!)
       };
     };
     const known = x.length > 0;
@@ -74,7 +74,7 @@ export class FitnessCurve {
       x_label: plot_texts.generation,
       y_label: plot_texts.fitness,
       counted_x: true,
-      from_zero: true,
+      from_zero: world.has_bodies,
       smoothed: plot_texts.mean_of(generations_in_mean),
       marks: known ? [{marks: marks_of(world.history.changes), name: ""}] : [],
       note_end: plot_texts.click_shows(first),

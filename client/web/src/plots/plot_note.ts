@@ -1,5 +1,5 @@
 // PlotNote: the numbers at the cursor of a plot, in a box next to the plot.
-import {shown_number, significant} from "../texts/numbers";
+import {fitness_text, shown_number, significant} from "../texts/numbers";
 import {plot_texts} from "../texts/plot";
 import {h} from "../widgets/dom";
 
@@ -84,12 +84,12 @@ export function index_at(series: Series, x: number): number|null {
 }
 
 function value_text(content: PlotContent, series: Series, index: number): string {
-  const text = (number: number) => (series.whole === true ? shown_number(number) : significant(number));
+  const text = (number: number) => (series.whole === true ? shown_number(number) : fitness_text(number));
   const y = series.y[index]!;
   if (series.kind === "band" && series.low !== undefined) {
     return plot_texts.band(text(series.low[index]!), text(y));
   }
   return series.raw === undefined ?
     text(y) :
-    plot_texts.smoothed(text(series.raw[index]!), content.smoothed ?? plot_texts.mean, significant(y));
+    plot_texts.smoothed(text(series.raw[index]!), content.smoothed ?? plot_texts.mean, fitness_text(y));
 }

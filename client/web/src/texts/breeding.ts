@@ -1,6 +1,6 @@
 // Texts about how a generation was bred: captions of the glass box, the law of the selection, and where the genes of an
 // organism come from.
-import {three_digits, with_separators} from "./numbers";
+import {fitness_text, three_digits, with_separators} from "./numbers";
 
 export function counted(count: number, one: string, many: string): string {
   return `${with_separators(count)} ${count === 1 ? one : many}`;
@@ -28,8 +28,8 @@ export function delta_text(delta: number): string {
 export const breeding_texts = {
   /** "organism 17 (rank 3, fitness 182)". For users, the fittest has rank 1. */
   contender: (id: number, rank: number, fitness: number, own_fitness: number|null, from_island: number|null): string =>
-    `organism ${id} (rank ${with_separators(rank + 1)}, fitness ${three_digits(fitness)}` +
-    (own_fitness === null ? "" : ` assigned by shuffling, own fitness ${three_digits(own_fitness)}`) +
+    `organism ${id} (rank ${with_separators(rank + 1)}, fitness ${fitness_text(fitness)}` +
+    (own_fitness === null ? "" : ` assigned by shuffling, own fitness ${fitness_text(own_fitness)}`) +
     (from_island === null ? "" : `, migrated from island ${from_island}`) + ")",
   unknown_contender: (id: number): string => `organism ${id}`,
 
@@ -120,7 +120,7 @@ export const breeding_texts = {
       expected: number;
       observed: number|null;
       migrant: {island?: number; organism?: number} | undefined;
-    }): string => `organism ${id}: rank ${with_separators(rank + 1)}, fitness ${three_digits(fitness)}` +
+    }): string => `organism ${id}: rank ${with_separators(rank + 1)}, fitness ${fitness_text(fitness)}` +
     (slot > 0 ? `, weight ${three_digits(weight)}: ${three_digits(100 * slot)} % of the wheel` : "") +
     `; expected picks ${three_digits(expected)}` +
     (observed === null ? "" : `, observed ${with_separators(observed)}`) +

@@ -23,7 +23,7 @@ export const column_texts = {
   no_connection: "There is no connection.",
   is_viewer: "You are a viewer: read-only.",
   takes_part: "You take part: changes act for everyone.",
-  watches: "to run, feed and change this world.",
+  watches: (has_bodies: boolean) => `to run${has_bodies ? ", feed" : ""} and change this world.`,
   session: "The user and the role of this session",
 };
 

@@ -1,5 +1,5 @@
 // What people read about evolution: generation 1 next to the present.
-import {significant, with_separators} from "./numbers";
+import {fitness_text, significant, with_separators} from "./numbers";
 
 function generations(count: number): string {
   return count === 1 ? "1 generation" : `${with_separators(count)} generations`;
@@ -15,7 +15,7 @@ export const evolution_texts = {
   runs: (done: number, count: number) => `Evolving: ${with_separators(done)} of ${generations(count)}`,
   interrupted: "The run at full speed was interrupted.",
   stands: (world: string, why: string) => `${world} does not run: ${why}`,
-  fitness: (mean: number, best: number) => `mean fitness ${significant(mean)}, best ${significant(best)}`,
+  fitness: (mean: number, best: number) => `mean fitness ${fitness_text(mean)}, best ${fitness_text(best)}`,
   then: (generation: number, fitness: string) => `Generation ${with_separators(generation)}: ${fitness}`,
   now: (generation: number, fitness: string) => `Now, after generation ${with_separators(generation)}: ${fitness}`,
   in_progress: "its first round is not over yet",

@@ -1,6 +1,6 @@
 // Texts of the panel "Family tree".
 import {choice_text, counted} from "./breeding";
-import {three_digits, with_separators} from "./numbers";
+import {fitness_text, three_digits, with_separators} from "./numbers";
 
 interface Named {
   generation: number;
@@ -109,7 +109,7 @@ export const family_texts = {
     ].join(" and ");
     return `Organism ${organism} of generation ${with_separators(generation)}` +
       `${island > 0 ? `, island ${island}` : ""}: ${kind}` +
-      (fitness === null ? "" : `, fitness ${three_digits(fitness)}`) +
+      (fitness === null ? "" : `, fitness ${fitness_text(fitness)}`) +
       (next ? `; ${next} in the next generation` : "") + ".";
   },
   of_lineage: (founder: Named): string => ` Lineage of ${name(founder)}.`,

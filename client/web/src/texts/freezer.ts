@@ -97,10 +97,13 @@ export const freezer_texts = {
   wrong_line: (line: number, got: string, allowed: string) =>
     `line ${with_separators(line)}: got "${got}", allowed: ${allowed}`,
   not_csv: (line: number) => `line ${with_separators(line)}: a cell in quotation marks does not end as it must`,
-  heading: "island,organism as the first columns, and a column with a name for each gene",
-  row: (genes: number) => `the numbers of island and organism, and ${counted(genes, "gene", "genes")}`,
-  order: (organism: number, island: number) =>
-    `organism ${organism} of island ${island}, or organism 0 of the next island`,
+  heading: "the heading island,organism and the names of the genes, in any order, each name once",
+  row: (genes: number, allowed: number, got: number) =>
+    `an island, an organism and ${counted(genes, "gene", "genes")}, so ${allowed} cells, not ${got}` +
+    (got > allowed ? "; decimal commas need semicolons or tabs between the cells" : ""),
+  cell: (column: string, choices: readonly string[]) =>
+    `${column === "island" || column === "organism" ? "a whole number" : "a number"}${
+      choices.length > 0 ? `, or one of ${choices.join(", ")}` : ""} (column ${column})`,
   no_organism: "there is no organism in it",
   of_file: (file: string, problem: string) => `${file}: ${problem}.`,
   file_too_large: (bytes: number, bytes_max: number) =>

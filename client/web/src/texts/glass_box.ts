@@ -1,6 +1,6 @@
 // Texts of the panel "Glass box": its controls and drawings. What it says about a breeding is in breeding.ts.
 import {counted} from "./breeding";
-import {three_digits, with_separators, with_sign} from "./numbers";
+import {fitness_text, three_digits, with_separators, with_sign} from "./numbers";
 
 /** A number of standard errors; infinite if the expected number does not vary. */
 function off_text(off: number): string {
@@ -72,7 +72,7 @@ export const glass_box_texts = {
                            "The fittest organism comes first."),
   bets_label: "Bets",
   bet_on: (organism: number, rank: number, fitness: number): string =>
-    `organism ${organism}: rank ${rank + 1}, fitness ${three_digits(fitness)}`,
+    `organism ${organism}: rank ${rank + 1}, fitness ${fitness_text(fitness)}`,
   no_bets: "Your bets: none yet.",
   your_bets: (organisms: readonly number[]): string => `Your bets: ${organisms.join(", ")}.`,
 
@@ -119,13 +119,13 @@ export const glass_box_texts = {
     `rank ${with_separators(rank + 1)}${of === null ? "" : ` of ${with_separators(of)}`}`,
   slot_share: (share: number, wide: boolean): string => `${three_digits(100 * share)} %${wide ? " of the wheel" : ""}`,
   contestants: "Contestants in the order drawn",
-  contestant_fitness: (fitness: number, won: boolean): string => three_digits(fitness) + (won ? " won" : ""),
+  contestant_fitness: (fitness: number, won: boolean): string => fitness_text(fitness) + (won ? " won" : ""),
   unknown: "…",
   fitness: "Fitness",
   weight: "Weight",
   by_rank: (title: string, range: string): string => `${title} by rank: ${range}`,
   rank_range: (best: number, worst: number, count: number): string =>
-    `${three_digits(best)} (rank 1) to ${three_digits(worst)} (rank ${with_separators(count)})`,
+    `${fitness_text(best)} (rank 1) to ${fitness_text(worst)} (rank ${with_separators(count)})`,
   ranks: (first: number, last: number): string => `ranks ${first + 1} to ${last + 1}`,
   picks_in_order: (pick: number, count: number): string => `Picks in order: ${pick + 1} of ${count}`,
   one_pick: (pick: number): string => `pick ${pick + 1}`,
@@ -135,7 +135,7 @@ export const glass_box_texts = {
   plus_two: "+2",
   minus_two: "−2",
   one_rank: (rank: number, organism: number, fitness: number): string =>
-    `rank ${rank + 1}: organism ${organism}, fitness ${three_digits(fitness)}`,
+    `rank ${rank + 1}: organism ${organism}, fitness ${fitness_text(fitness)}`,
   copies: (copies: number, expected: number, error: number, deviation: number|null): string =>
     `; picks ${with_separators(copies)}, expected ${three_digits(expected)} ± ${three_digits(error)}` +
     (deviation === null ? "" : `; ${with_sign(deviation)} standard errors`),

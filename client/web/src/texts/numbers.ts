@@ -42,6 +42,31 @@ export function three_digits(number: number): string {
   return size >= 999.5 ? separated(number.toFixed(0)) : shown_number(Number(number.toPrecision(3)));
 }
 
+/** A fitness with separators and "−": plain_fitness(), or "–" unless it is finite. */
+export function fitness_text(fitness: number): string {
+  return Number.isFinite(fitness) ? separated(plain_fitness(fitness)) : "–";
+}
+
+/** A finite fitness, by the rule of `fitness_text` in proto/text/number_text.h. */
+export function plain_fitness(fitness: number): string {
+  const size = Math.abs(fitness);
+  if (size >= 10 && size < 1e7) {
+    return rounded_to_even(fitness, Math.floor(Math.log10(size)) + 2).toFixed(1);
+  }
+  const rounded = fitness === 0 ? 0 : rounded_to_even(fitness, 4);
+  const has_exponent = fitness !== 0 && (size >= 1e7 || Math.abs(rounded) < 1e-4);
+  const text = has_exponent ? rounded.toExponential().replace(/e([+-])(\d)$/, "e$10$2") : String(rounded);
+  return /[.e]/.test(text) ? text : `${text}.0`;
+}
+
+/** Rounds to significant digits, and ties to even as printf does; toPrecision rounds ties away from zero. */
+function rounded_to_even(number: number, digits: number): number {
+  const [mantissa, exponent] = Math.abs(number).toExponential(40).split("e"), all = mantissa!.replace(".", "");
+  const kept = Number(all.slice(0, digits)), rest = all.slice(digits);
+  const up = rest[0]! >= "5" && (kept % 2 === 1 || !/^50*$/.test(rest));
+  return Math.sign(number) * Number(`${kept + Number(up)}e${Number(exponent) - digits + 1}`);
+}
+
 export function with_unit(number: number, unit: string): string {
   return shown_number(number) + (unit ? " " : "") + unit;
 }

@@ -1,6 +1,6 @@
 // What people read in and above an island: its name, hints, tiles of all islands, the views of two worlds.
 import type {Tool} from "../core/messages";
-import {with_separators} from "./numbers";
+import {fitness_text, with_separators} from "./numbers";
 
 function organisms(count: number): string {
   return count === 1 ? "1 organism" : `${with_separators(count)} organisms`;
@@ -25,6 +25,7 @@ export const pane_texts = {
   replay_of: (world: string) => `REPLAY of ${world}`,
   a_file: "a file",
   not_connected: "not connected",
+  silent: (seconds: number) => `no data for ${seconds} s`,
   end_of_replay: "end of the replay",
   slower: " slower",
   close: "Close this world",
@@ -46,13 +47,13 @@ export const tile_texts = {
   name: (island: number, width: LabelWidth) => width === "wide" ? `Island ${island}` : String(island),
   facts: (alive: number, fitness: number|null, width: LabelWidth) => with_separators(alive) +
     (width === "narrow" ? "" : " alive") +
-    (width === "wide" && fitness !== null ? ` · fitness ${fitness.toFixed(1)}` : ""),
+    (width === "wide" && fitness !== null ? ` · fitness ${fitness_text(fitness)}` : ""),
   waiting: (island: number) => `Island ${island}. Waiting for the first snapshot.`,
   /** fitness: the mean of the generation before; null: not known. */
   label: (island: number, generation: number, alive: number, health: number, fitness: number|null) =>
     `Island ${island}: generation ${with_separators(generation)}, ${organisms(alive)} alive, ` +
     `mean health ${health.toFixed(1)}` +
-    (fitness === null ? "" : `, mean fitness of the generation before ${fitness.toFixed(1)}`) + ".",
+    (fitness === null ? "" : `, mean fitness of the generation before ${fitness_text(fitness)}`) + ".",
 };
 
 export const link_texts = {

@@ -1,10 +1,15 @@
 // Texts of the panel "Parameters".
 import type {ParameterEffect} from "../core/protocol";
 
-import {with_separators} from "./numbers";
+import {capitalised, with_separators} from "./numbers";
 
 const counted = (count: number, one: string, many: string): string =>
   `${with_separators(count)} ${count === 1 ? one : many}`;
+
+/** Warnings of the server, each on a line. */
+export function warning_text(warnings: readonly string[]): string {
+  return warnings.map((warning) => `${capitalised(warning)}.`).join("\n");
+}
 
 /** When a change takes effect: a word for the row, and a sentence. */
 export const effect_texts: {readonly[effect in ParameterEffect]?: {word: string; sentence: string}} = {

@@ -13,12 +13,12 @@ export function place_and_speed_text(
     (running && snapshot.ticks_per_s > 0 ? ` (${with_separators(snapshot.ticks_per_s)} ticks/s)` : "");
 }
 
-/** "alive 50 of 50", "mean health 131.3", … */
-export function statistics_texts(snapshot: SnapshotInfo): string[] {
+/** "alive 50 of 50", "mean health 131.3", …; of organisms without bodies only the tick. */
+export function statistics_texts(snapshot: SnapshotInfo, has_bodies: boolean): string[] {
   const live = snapshot.live;
   return [
     ...(
-      live ?
+      live && has_bodies ?
         [
           `alive ${with_separators(live.alive_count ?? 0)} of ${with_separators(live.organism_count ?? 0)}`,
           `mean health ${(live.health_mean ?? 0).toFixed(1)}`,

@@ -2,8 +2,9 @@
 //
 // Reconnecting   While the connection is lost, it tries again after 0.25 s, then after twice as long, up to 5 s. The
 //                core then subscribes again and repeats the unanswered requests.
-// Silence        A server that sends nothing for silence_ms gets a query, which a living server answers. A server that
-//                sends nothing for silence_max_ms has disappeared without closing the connection.
+// Silence        A server that sends nothing for silence_ms gets a query, which a living server answers; while a world
+//                runs, earlier. The page shows a silence of silence_shown_ms. A server that sends nothing for
+//                silence_max_ms has disappeared without closing the connection.
 import {ClientCore} from "../core/client_core";
 import type {CoreEvent} from "../core/core_session";
 import type {ConnectionState} from "../core/messages";
@@ -12,7 +13,8 @@ import type {Timings} from "./timings";
 
 const client_name = "browser";
 const backoff_min_ms = 250, backoff_max_ms = 5000;
-const silence_ms = 10_000, silence_max_ms = 25_000, silence_interval_ms = 5000;
+const silence_ms = 10_000, silence_max_ms = 25_000, silence_interval_ms = 500;
+const running_silence_ms = 1500, silence_shown_ms = 3000; // while a world runs, so that snapshots are expected
 
 export interface ConnectionListener {
   /** Takes what the core reports, in order. */
@@ -32,6 +34,8 @@ export class Connection {
   #backoff_ms = backoff_min_ms;
   #received_ms = 0; // when the last bytes arrived
   #has_queried = false; // the silence has been answered with a query
+  #is_running = false; // the world of the last snapshot
+  #silent_s = 0; // of ConnectionState
 
   constructor(listener: ConnectionListener, timings: Timings) {
     this.#listener = listener;
@@ -104,6 +108,8 @@ export class Connection {
   lose(message: string, code: string): void {
     const ended = this.#socket, core = this.core!;
     this.#socket = null;
+    this.#silent_s = 0;
+    this.#is_running = false;
     ended?.close();
     const {failed} = core;
     const events = core.lost({message, code});
@@ -127,6 +133,12 @@ export class Connection {
     this.#received_ms = performance.now();
     this.#has_queried = false;
     const events = this.core!.received(bytes);
+    for (const event of events) {
+      if (event.kind === "snapshot") {
+        this.#is_running = event.snapshot.info.state === "RUN_STATE_RUNNING";
+      }
+    }
+    this.#show_silence(0);
     const decoded = events.filter((event) => event.kind === "snapshot").length;
     if (decoded > 0) {
       this.#timings.decoded((performance.now() - this.#received_ms) / decoded);
@@ -136,21 +148,30 @@ export class Connection {
   }
 
   #watch_silence(): void {
-    const silent_ms = performance.now() - this.#received_ms;
-    if (!this.core?.connected || !this.#socket || silent_ms < silence_ms) {
+    const silent_ms = performance.now() - this.#received_ms, expects = this.#is_running && this.may_stream;
+    if (!this.core?.connected || !this.#socket) {
       return;
     }
+    this.#show_silence(expects && silent_ms >= silence_shown_ms ? Math.floor(silent_ms / 1000) : 0);
     if (silent_ms > silence_max_ms && this.#has_queried) {
       this.lose(worker_texts.silent(this.#host, Math.round(silent_ms / 1000)), "");
-    } else if (!this.#has_queried) {
+    } else if (!this.#has_queried && silent_ms >= (expects ? running_silence_ms : silence_ms)) {
       this.#has_queried = true;
       this.core.requests.add({list_worlds: {}}, true);
       this.flush();
     }
   }
 
+  #show_silence(seconds: number): void {
+    if (seconds !== this.#silent_s) {
+      this.#silent_s = seconds;
+      this.#report("open", "", "");
+    }
+  }
+
   #report(phase: ConnectionState["phase"], message: string, code: string): void {
     const sentence = message.charAt(0).toUpperCase() + message.slice(1);
-    this.#listener.changed({phase, message: sentence, code, welcome: this.core?.welcome ?? null});
+    const welcome = this.core?.welcome ?? null;
+    this.#listener.changed({phase, message: sentence, code, silent_s: this.#silent_s, welcome});
   }
 }

@@ -4,7 +4,7 @@
 // in as the server does; proto/vectors/events.json contains examples, which the tests of both compare. The page fills
 // in the events itself, because it creates events_dropped itself, too.
 import texts from "../../../../proto/texts/events.json";
-import {capitalised, with_separators} from "../texts/numbers";
+import {capitalised, plain_fitness, with_separators} from "../texts/numbers";
 import {type EventKind, kind_of, type RequestKind} from "../core/messages";
 import type {Event} from "../core/protocol";
 
@@ -89,10 +89,10 @@ function text_of_all(values: unknown[], rule: string, event: Event): Filled {
     case "sum":
       return amount(given.reduce((sum: bigint, value) => sum + whole(value), 0n), words);
     case "max":
-      return {text: one_decimal(values.length ? Math.max(...values.map(number)) : 0), present: any_given};
+      return {text: plain_fitness(values.length ? Math.max(...values.map(number)) : 0), present: any_given};
     case "mean":
       return {
-        text: one_decimal(values.reduce((sum: number, value) => sum + number(value) / values.length, 0)),
+        text: plain_fitness(values.reduce((sum: number, value) => sum + number(value) / values.length, 0)),
         present: any_given
       };
     case "if":
@@ -146,8 +146,4 @@ function real_text(number: number): string {
   const size = Math.abs(number);
   return size === 0 || (size >= 1e-5 && size < 1e15) ? String(number + 0) :
                                                        number.toExponential().replace(/e([+-])(\d)$/, "e$10$2");
-}
-
-function one_decimal(number: number): string {
-  return Math.abs(number) >= 1e15 ? real_text(number) : number.toFixed(1);
 }

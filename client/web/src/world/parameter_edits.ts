@@ -62,6 +62,8 @@ export class ParameterEdits {
   /** Why the last transaction was refused; empty if it was accepted. A reason that concerns one parameter is its
    *  violation. */
   problem = "";
+  /** What the server warned about when it checked the edits, as sentences. */
+  warnings: readonly string[] = [];
   revision = 0; // 0: no set has been received
   registry: readonly ParameterDescription[] = [];
   parameters: EditedParameter[] = []; // in the order of the registry
@@ -87,8 +89,7 @@ export class ParameterEdits {
     this.planned = [];
     this.schedule = [];
     this.#sent = null;
-    this.problem = "";
-    this.#edit_number += 1;
+    this.#forget_answer();
   }
 
   /** Stores a complete ParameterSet unless a newer one is known. */
@@ -134,7 +135,7 @@ export class ParameterEdits {
     return this.registry.length > 0 && this.revision > 0;
   }
 
-  // ---- editing: clears the violations and the problem of the last refusal, because they are about earlier values ----
+  // ---- editing: clears what the server answered about earlier values ----
 
   /** Edits a value; i: its index in the registry. A value equal to the requested one removes the edit. */
   edit(i: number, value: ParameterValue): void {
@@ -148,16 +149,17 @@ export class ParameterEdits {
     for (const parameter of i === undefined ? this.parameters : [this.parameters[i]!]) {
       parameter.edit = null;
     }
-    this.#forget_refusal();
+    this.#forget_answer();
   }
 
   get edit_count(): number {
     return this.#edits().length;
   }
 
-  #forget_refusal(): void {
+  #forget_answer(): void {
     this.#mark([]);
     this.problem = "";
+    this.warnings = [];
     this.#edit_number += 1;
   }
 
@@ -172,10 +174,11 @@ export class ParameterEdits {
       {fields: {...fields_of(world, this.revision, changes, when), dry_run: true}, number: this.#edit_number};
   }
 
-  /** Stores the violations of a dry run unless the edits have changed since. refusal: null if it was accepted. */
-  checked(number: number, refusal: RefusalFacts|null): void {
+  /** Stores the answer to a dry run, the warnings or the refusal, unless the edits have changed since. */
+  checked(number: number, answer: {warnings: readonly string[]}|{refusal: RefusalFacts}): void {
     if (number === this.#edit_number && !this.busy) {
-      this.#mark(refusal?.violations ?? []);
+      this.#mark("refusal" in answer ? answer.refusal.violations : []);
+      this.warnings = "warnings" in answer ? answer.warnings : [];
     }
   }
 
@@ -213,7 +216,7 @@ export class ParameterEdits {
       return false;
     }
     this.#sent = null;
-    this.#forget_refusal();
+    this.#forget_answer();
     if ("set" in answer) {
       for (const {parameter, after} of sent.changes) {
         parameter.client_of_last_change = "";

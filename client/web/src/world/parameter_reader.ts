@@ -6,6 +6,7 @@ import type {SnapshotFeed} from "./feed";
 
 export class ParameterReader {
   set: ParameterSet|null = null; // of the shown world
+  warnings: readonly string[] = []; // of the server, about `set`
   #pending = false;
   #is_stale = false;
   readonly #feed: SnapshotFeed;
@@ -41,11 +42,12 @@ export class ParameterReader {
     }
     this.#pending = true;
     this.#is_stale = false;
-    server.request("get_parameters", {world})
+    server.respond("get_parameters", {world})
       .then(
-        (set) => {
+        ({parameters, warnings}) => {
           if (world === this.#feed.world) {
-            this.set = set;
+            this.set = parameters ?? null;
+            this.warnings = warnings ?? [];
           } else {
             this.#is_stale = true;
           }

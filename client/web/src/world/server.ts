@@ -29,7 +29,7 @@ type Waiting = {
 };
 
 export class Server {
-  state: ConnectionState = {phase: "connecting", message: "", code: "", welcome: null};
+  state: ConnectionState = {phase: "connecting", message: "", code: "", silent_s: 0, welcome: null};
   /** The registry, in order. Empty until the session is open. */
   parameters: ParameterDescription[] = [];
   features: ReadonlySet<string> = new Set();
@@ -66,7 +66,7 @@ export class Server {
   }
 
   connect(token: string): void {
-    this.state = {phase: "connecting", message: "", code: "", welcome: this.state.welcome};
+    this.state = {phase: "connecting", message: "", code: "", silent_s: 0, welcome: this.state.welcome};
     this.post({kind: "connect", url: this.#url, token, descriptor: this.#descriptor.slice(0)});
     this.changes.notify();
   }

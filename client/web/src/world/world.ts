@@ -10,6 +10,7 @@ import type {SnapshotInfo} from "../core/snapshot";
 import {Changes} from "./changes";
 import {RunControl} from "./run_control";
 import {SnapshotFeed} from "./feed";
+import {value_in_effect} from "./gene_axes";
 import {WorldHistory} from "./history";
 import {ParameterReader} from "./parameter_reader";
 import {Past} from "./past";
@@ -77,6 +78,12 @@ export class ViewedWorld {
 
   get is_replay(): boolean {
     return this.past.is_shown;
+  }
+
+  /** Whether the organisms live on an island. Otherwise only their genes matter, and islands are empty. */
+  get has_bodies(): boolean {
+    const {set} = this.parameters, fitness = value_in_effect(set, "fitness")?.choice ?? "life";
+    return fitness === "life" || (fitness === "external" && value_in_effect(set, "external_bodies")?.flag === true);
   }
 
   get gene_names(): string[] {
@@ -196,8 +203,9 @@ export class ViewedWorld {
         }
         break;
       case "placed":
+      case "fitness_set":
         if (is_shown) {
-          this.population.lacks_placed();
+          this.population.expire();
         }
         break;
       case "generation_finished":
@@ -228,7 +236,6 @@ export class ViewedWorld {
       case "storage_changed":
       case "removed":
       case "fitness_awaited":
-      case "fitness_set":
       case undefined:
         break;
       default:

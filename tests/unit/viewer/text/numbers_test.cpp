@@ -39,15 +39,11 @@ TEST(Numbers, HaveSixDigits) {
     EXPECT_EQ(shown_number(std::numeric_limits<double>::quiet_NaN()), "–");
 }
 
-TEST(Numbers, HaveThreeSignificantDigits) {
-    EXPECT_EQ(significant(1234.5), "1,230");
-    EXPECT_EQ(significant(104'286), "104,000");
-    EXPECT_EQ(significant(0.64032), "0.64");
-    EXPECT_EQ(significant(-343.082), "−343");
-    EXPECT_EQ(significant(9.996), "10");
-    EXPECT_EQ(significant(0), "0");
-    EXPECT_EQ(significant(-1.2345e-9), "−1.23e-09");
-    EXPECT_EQ(significant(std::numeric_limits<double>::infinity()), "–");
+TEST(Numbers, OfAFitnessHaveSeparators) { // the digits: tests/unit/text
+    EXPECT_EQ(shown_fitness(-1234.56), "−1,234.6");
+    EXPECT_EQ(shown_fitness(0.95312), "0.9531");
+    EXPECT_EQ(shown_fitness(-0.0), "0.0");
+    EXPECT_EQ(shown_fitness(std::numeric_limits<double>::infinity()), "–");
 }
 
 TEST(Numbers, AreReadOnlyFromDigits) {

@@ -1,0 +1,49 @@
+// gene_axes: the bounds and the possible values of each gene, from the list of free genes and from the parameters.
+import type {FreeGene, ParameterSet, ParameterValue, WorldInfo} from "../core/protocol";
+import {gene_text} from "../texts/breeding";
+
+export interface GeneAxis {
+  name: string;
+  min: number|null; // null: unknown
+  max: number|null;
+  logarithmic: boolean;
+  choices: readonly string[]; // of a gene that contains the index of one of them; otherwise empty
+}
+
+/** The value of a parameter that is in effect; undefined if the set does not contain it. */
+export function value_in_effect(set: ParameterSet|null, name: string): ParameterValue|undefined {
+  return set?.parameters?.find((parameter) => parameter.name === name)?.value;
+}
+
+/** Returns an axis for each gene of a chromosome, in order. */
+export function gene_axes(info: WorldInfo|null, set: ParameterSet|null): GeneAxis[] {
+  const listed = new Map((info?.free_genes?.genes ?? []).flatMap(axes_of).map((axis) => [axis.name, axis]));
+  return (info?.gene_names ?? []).map((name, gene) => {
+    const prefix = info?.gene_groups?.[gene] === "GENE_GROUP_FREE" ? "free_gene" : name;
+    const bound = (which: string): number|null => {
+      const value = value_in_effect(set, `${prefix}_${which}`);
+      return value === undefined ? null : value.real ?? 0;
+    };
+    return listed.get(name) ?? {name, min: bound("min"), max: bound("max"), logarithmic: false, choices: []};
+  });
+}
+
+function axes_of({name = "", min = 0, max = 0, logarithmic = false, choices = [], permutation = 0}: FreeGene):
+  GeneAxis[] {
+  if (permutation > 0) {
+    return Array.from({length: permutation}, (_, i) => (
+      {name: `${name}${i}`, min: 0, max: permutation - 1, logarithmic: false, choices: []}));
+  }
+  return [choices.length > 0 ? {name, min: 0, max: choices.length - 1, logarithmic: false, choices} :
+                               {name, min, max, logarithmic, choices}];
+}
+
+/** The texts of the genes that are choices, by name. */
+export function gene_choices(info: WorldInfo|null): ReadonlyMap<string, readonly string[]> {
+  return new Map((info?.free_genes?.genes ?? []).filter(({choices}) => choices).map(({name = "", choices}) => [name, choices!]));
+}
+
+/** "relu" for a choice, "0.01" for a number. */
+export function gene_value_text(axis: GeneAxis, value: number): string {
+  return axis.choices[Math.round(value)] ?? gene_text(value);
+}
