@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy
 
+from evod import plotting
 from evod.errors import wrong_argument
 from evod.paired_tests import hedges_g, holm, interval, sign_flip_p
 from evod.tables import html_table, pandas, read_csv
@@ -159,6 +160,15 @@ class Sweep:
         result.insert(6, "adjusted", holm(list(result.p)))
         return result
 
+    def plot(self, measure: str = "fitness_mean", ax: Any = None) -> Any:
+        """Plots a column of `totals` with matplotlib, and returns the axes.
+
+        One swept parameter: a curve over the generations for each value, the mean of the replicates with a band of one
+        standard error. Two: the mean of the replicates in their last generations, as a heat map, or as points if the
+        values are not a grid.
+        """
+        return plotting.plot_sweep(self.totals, self.parameters, self._checked(measure), ax)
+
     @property
     def _run_columns(self) -> list[str]:
         return ["cell", "replicate", "seed", *self.parameters]
@@ -180,4 +190,4 @@ class Sweep:
         fields = (("parameters", ", ".join(self.parameters)), ("cells", self.cell_count),
                   ("replicates", self.replicates),
                   ("seed", self.seed))  # fmt: skip
-        return html_table((), fields, "sweep")
+        return html_table((), fields, "sweep") + plotting.image_html(self.plot)
