@@ -1,4 +1,4 @@
-"""client/r/evod.R reads run files and tables exactly. EVOD names the program; Rscript and the package RSQLite are needed."""
+"""client/r/evod.R reads run files and tables exactly. EVOD names the program. It needs Rscript and the package RSQLite."""
 import csv
 import io
 import json
@@ -97,8 +97,9 @@ class R(unittest.TestCase):
                 self.assertEqual({row["seed"] for row in rows}, {str(SEED), str(SEED - 2)})
 
     def test_the_script_prints_a_table_and_draws(self):
-        for path, seed in ((self.run_file, f"seed {SEED}"), (self.folder / "sweep/runs.csv", f"seeds {SEED}, {SEED - 2}"),
-                           (self.folder / "run.csv", "fitness_mean")):  # fmt: skip
+        for path, seed in ((self.run_file, f"seed {SEED}"),
+                           (self.folder / "sweep/runs.csv", f"seeds {SEED}, {SEED - 2}"),
+                           (self.folder / "run.csv", "fitness_mean")):
             figure = self.folder / "figure.png"
             printed = done("Rscript", "--vanilla", LIBRARY, path, figure)
             self.assertIn(seed, printed)
@@ -110,8 +111,10 @@ class R(unittest.TestCase):
         self.assertTrue(re.search(rf"^ +3 +{best:.3f}", printed, re.M), printed)
 
     def test_mistakes_are_named(self):
-        for words, message in (([], "write: Rscript evod.R FILE"), ([self.run_file, "x.bmp"], "ends in .png, .svg or .pdf")):
-            ended = waiting.run(["Rscript", "--vanilla", str(LIBRARY), *map(str, words)], capture_output=True, text=True)
+        for words, message in (([], "write: Rscript evod.R FILE"),
+                               ([self.run_file, "x.bmp"], "ends in .png, .svg or .pdf")):
+            command = ["Rscript", "--vanilla", str(LIBRARY), *map(str, words)]
+            ended = waiting.run(command, capture_output=True, text=True)
             self.assertNotEqual(ended.returncode, 0)
             self.assertIn(message, ended.stderr)
 
