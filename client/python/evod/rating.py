@@ -125,24 +125,24 @@ class Rater:
         return fitness
 
     def _remember(self, genes: Genes, keys: Sequence[bytes], fitness: Array, life: Life) -> None:
-        cost = fitness if self.minimize else -fitness
-        for place, i in enumerate(numpy.argsort(cost, kind="stable")[:HALL_MAX]):
-            found = Solution(genes[i].copy(), float(fitness[i]), life.generation, life.island, int(i))
-            if place == 0 and (self._best is None or self._best[0] != life.generation
-                               or self._is_better(found, self._best[1])):
-                self._best = life.generation, found
-            last = next(reversed(self._hall.values())) if len(self._hall) >= HALL_MAX else None
-            if last is not None and not self._is_better(found, last):
-                break
-            key = keys[i]
-            if key in self._hall and not self._is_better(found, self._hall[key]):
+        costs = (fitness if self.minimize else -fitness).tolist()
+        last = next(reversed(self._hall.values())) if len(self._hall) >= HALL_MAX else None
+        for place, i in enumerate(numpy.argsort(costs, kind="stable")[:HALL_MAX].tolist()):
+            known = self._hall.get(keys[i], last)
+            if place > 0 and known is not None and costs[i] >= self._cost(known):
+                if known is last:
+                    break
                 continue
-            self._hall[key] = found
-            ranked = sorted(self._hall.items(), key=lambda item: item[1].fitness if self.minimize else -item[1].fitness)
-            self._hall = dict(ranked[:HALL_MAX])
+            found = Solution(genes[i].copy(), float(fitness[i]), life.generation, life.island, i)
+            if place == 0 and (self._best is None or self._best[0] != life.generation
+                               or costs[i] < self._cost(self._best[1])):
+                self._best = life.generation, found
+            if known is None or costs[i] < self._cost(known):
+                self._hall[keys[i]] = found
+        self._hall = dict(sorted(self._hall.items(), key=lambda item: self._cost(item[1]))[:HALL_MAX])
 
-    def _is_better(self, one: Solution, other: Solution) -> bool:
-        return one.fitness < other.fitness if self.minimize else one.fitness > other.fitness
+    def _cost(self, solution: Solution) -> float:
+        return solution.fitness if self.minimize else -solution.fitness
 
 
 def genes_of(population: Population, visible: Sequence[str] | None) -> Genes:

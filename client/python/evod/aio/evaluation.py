@@ -9,15 +9,13 @@ from typing import Any, AsyncIterator, Callable, Protocol, TypeVar
 
 import numpy.typing
 
-from evod import plans
 from evod.aio.link import Link, blocking_call
 from evod.aio.watched import call_back
 from evod.generations import Generation, History, Population
-from evod.plans import GenerationStream
+from evod.plans import GenerationStream, Plan
 from evod.progress import ProgressLine
 from evod.rating import EndRules, Rater
 from evod.results import WorldInfo
-from evod.v1 import world_pb2
 
 T = TypeVar("T")
 
@@ -28,7 +26,7 @@ class _Rated(Protocol):
     @property
     def name(self) -> str: ...
 
-    async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool: ...
+    def _fitness_plan(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> Plan[bool]: ...
 
     async def pause(self) -> WorldInfo: ...
 
@@ -93,10 +91,10 @@ class Evaluation(History):
         """Rates organisms until another generation has ended, and adds it. Returns False at the end."""
         if self.reason:
             return False
-        step = await self._link.perform(self._stream.step())
-        while isinstance(step, world_pb2.AwaitedFitness):
-            await self._rate(step)
-            step = await self._link.perform(self._stream.step())
+        step = await self._link.perform(self._stream.rated_step(None))
+        while isinstance(step, Population):
+            fitness = await blocking_call(self._rater.rate, step)
+            step = await self._link.perform(self._stream.rated_step(self._world._fitness_plan(step, fitness)))
         if step is None:
             self.reason = self._stream.reason
             return False
@@ -110,13 +108,3 @@ class Evaluation(History):
         if self.reason:
             await self._world.pause()
         return True
-
-    async def _rate(self, awaited: world_pb2.AwaitedFitness) -> None:
-        for island in awaited.islands:
-            names = self._stream.info.gene_names
-            population = await self._link.perform(plans.population(self._world.name, island, names))
-            if population.generation != awaited.generation:
-                return  # another client has rated this generation
-            fitness = await blocking_call(self._rater.rate, population)
-            if not await self._world._set_fitness(population, fitness):
-                return

@@ -484,10 +484,8 @@ class World(ParameterAttributes, WorldQueries):
         stream = await self._link.perform(self._plans.run(self.name, generations))
         return Evaluation(self._link, stream, self, rater, rules, on_generation, progress)
 
-    async def _set_fitness(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> bool:
-        life = population.life
-        plan = self._plans.set_fitness(self.name, life.generation, life.island, fitness)
-        return await self._link.perform(plan)
+    def _fitness_plan(self, population: Population, fitness: numpy.typing.NDArray[Any]) -> plans.Plan[bool]:
+        return self._plans.set_fitness(self.name, population.life.generation, population.life.island, fitness)
 
     async def run_until_tick(self, tick: int) -> WorldInfo:
         """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the
