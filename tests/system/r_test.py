@@ -1,4 +1,4 @@
-"""client/r/evod.R reads run files and tables exactly. EVOD names the program. It needs Rscript and the package RSQLite."""
+"""client/r/evod.R reads run files and tables exactly. EVOD names the program. It needs Rscript and RSQLite."""
 import csv
 import io
 import json

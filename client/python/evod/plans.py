@@ -189,7 +189,8 @@ class GenerationStream:
         self._began = False
         self._over = False  # whether the run has ended; next() then returns only the generations in _ready
         self._awaited: world_pb2.AwaitedFitness | None = None  # the fitness for which the world waits, for step()
-        self._to_rate: tuple[int, list[int]] = (0, [])  # a generation and those of its islands that rated_step() has not returned
+        # a generation, and those of its islands that rated_step() has not returned
+        self._to_rate: tuple[int, list[int]] = (0, [])
         self.is_open = True  # whether the subscription has not ended
         self.reason = ""  # why the run has ended: "generations", "pause", or a termination criterion of the world
 
