@@ -7,7 +7,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from typing import Any, Callable, Mapping, Sequence
+from typing import Any, Callable, Mapping, NamedTuple, Sequence
 
 import numpy
 import numpy.typing
@@ -43,8 +43,9 @@ class Rater:
         self._has_bodies = has_bodies
         self.minimize = minimize
         self.evaluation_count = 0
-        self._hall: dict[bytes, Solution] = {}  # best first
-        self._best: tuple[int, Solution] | None = None  # the best solution of the generation with this number
+        self._hall: dict[bytes, _Rated] = {}  # by genes, best first
+        self._best: tuple[bytes, _Rated] | None = None  # the best one of the last generation that was rated
+        self._names: Sequence[str] = ()  # of the genes
         # The fitness by genes of the generation before and of this one; the islands of a generation are rated in turn.
         self._before: dict[bytes, float] = {}
         self._now: tuple[int, dict[bytes, float]] = (0, {})
@@ -57,7 +58,8 @@ class Rater:
         if population.generation != self._now[0]:
             self._before, self._now = self._now[1], (population.generation, {})
         genes = genes_of(population, self._visible)
-        keys = [row.tobytes() for row in numpy.ascontiguousarray(genes)]
+        self._names = genes.names or ()
+        keys = numpy.ascontiguousarray(genes).view(f"V{genes.itemsize * genes.shape[1]}").ravel().tolist()
         is_new = numpy.array([self._has_bodies or key not in self._before for key in keys], bool)
         life = dataclasses.replace(population.life, is_new=is_new)
         if self._only_new:
@@ -70,20 +72,22 @@ class Rater:
             fitness = self._call(genes, life, numpy.arange(len(keys)))
             self.evaluation_count += len(fitness)
         self._now[1].update(zip(keys, fitness.tolist()))
-        self._remember(genes, keys, fitness, life)
+        self._remember(keys, fitness, life)
         return 0.0 - fitness if self.minimize else fitness
 
     def completed(self, generation: Generation) -> Generation:
         """Returns an ended generation in the sign of the function, with what this Rater knows about it."""
         in_sign = generation.negated() if self.minimize else generation
-        best = self._best[1] if self._best is not None and self._best[0] == generation.number else None
+        best = None
+        if self._best is not None and self._best[1].generation == generation.number:
+            best = self._solution(*self._best)
         return dataclasses.replace(in_sign, evaluation_count=self.evaluation_count, best_solution=best)
 
     def hall_of_fame(self, k: int) -> list[Solution]:
         """Returns the k best solutions until now, best first."""
         if not 1 <= k <= HALL_MAX:
             raise wrong_argument("k", f"1 to {HALL_MAX}; world.hall_of_fame(k) returns more", k)
-        return list(self._hall.values())[:k]
+        return [self._solution(*item) for item in list(self._hall.items())[:k]]
 
     def _call(self, genes: Genes, life: Life, organisms: Array) -> Array:
         where = f"in generation {life.generation}, island {life.island}"
@@ -124,25 +128,33 @@ class Rater:
                 f"return a penalty: a number somewhat {worse} than those of all others", faults)
         return fitness
 
-    def _remember(self, genes: Genes, keys: Sequence[bytes], fitness: Array, life: Life) -> None:
-        costs = (fitness if self.minimize else -fitness).tolist()
-        last = next(reversed(self._hall.values())) if len(self._hall) >= HALL_MAX else None
+    def _remember(self, keys: Sequence[bytes], fitness: Array, life: Life) -> None:
+        costs = fitness if self.minimize else -fitness
+        last = next(reversed(self._hall.values())).cost if len(self._hall) >= HALL_MAX else math.inf
         for place, i in enumerate(numpy.argsort(costs, kind="stable")[:HALL_MAX].tolist()):
-            known = self._hall.get(keys[i], last)
-            if place > 0 and known is not None and costs[i] >= self._cost(known):
-                if known is last:
-                    break
-                continue
-            found = Solution(genes[i].copy(), float(fitness[i]), life.generation, life.island, i)
-            if place == 0 and (self._best is None or self._best[0] != life.generation
-                               or costs[i] < self._cost(self._best[1])):
-                self._best = life.generation, found
-            if known is None or costs[i] < self._cost(known):
+            found = _Rated(float(costs[i]), float(fitness[i]), life.generation, life.island, i)
+            if place == 0 and (self._best is None or self._best[1].generation != life.generation
+                               or found.cost < self._best[1].cost):
+                self._best = keys[i], found
+            if found.cost >= last:
+                break
+            if keys[i] not in self._hall or found.cost < self._hall[keys[i]].cost:
                 self._hall[keys[i]] = found
-        self._hall = dict(sorted(self._hall.items(), key=lambda item: self._cost(item[1]))[:HALL_MAX])
+        self._hall = dict(sorted(self._hall.items(), key=lambda item: item[1].cost)[:HALL_MAX])
 
-    def _cost(self, solution: Solution) -> float:
-        return solution.fitness if self.minimize else -solution.fitness
+    def _solution(self, key: bytes, rated: _Rated) -> Solution:
+        genes = Genes(numpy.frombuffer(key, numpy.float32).copy(), self._names)
+        return Solution(genes, rated.fitness, rated.generation, rated.island, rated.organism)
+
+
+class _Rated(NamedTuple):
+    """A solution without its genes."""
+
+    cost: float  # less is better
+    fitness: float  # as the function returned it
+    generation: int
+    island: int
+    organism: int
 
 
 def genes_of(population: Population, visible: Sequence[str] | None) -> Genes:
