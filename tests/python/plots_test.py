@@ -1,4 +1,6 @@
 """Plots of islands and runs: the drawn data are those of the snapshot or the statistics."""
+import dataclasses
+import pathlib
 import tempfile
 import unittest
 
@@ -63,6 +65,21 @@ class Plots(unittest.TestCase):
                                                for name in ("mutation_chance", "crossover_chance")}}
         scattered = evod.sweep(world, generations=2, seed=1, latin_hypercube=points).plot()
         self.assertEqual(len(scattered.collections[0].get_offsets()), 5)
+
+    def test_a_stored_sweep_is_the_sweep(self):
+        world = {"population_size": 10, "generation_s": 1}
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(evod.FileNotFound, "runs.csv"):
+                evod.open_sweep(folder)
+            made = evod.sweep(world, generations=2, seeds=[5, 2**64 - 1], out=folder,
+                              grid={"mutation_chance": [0.1, 0.2], "selection": ["random", "tournament"]})
+            for path in folder, folder + "/runs.csv":
+                stored = evod.open_sweep(path)
+                self.assertEqual(dataclasses.astuple(stored), dataclasses.astuple(made))
+            numpy.testing.assert_array_equal(stored.plot().images[0].get_array(), made.plot().images[0].get_array())
+            (pathlib.Path(folder) / "other.csv").write_text("a,b\n1,2\n")
+            with self.assertRaisesRegex(evod.DamagedData, "not the table of a sweep"):
+                evod.open_sweep(folder + "/other.csv")
 
     def test_a_sweep_of_three_parameters_has_no_plot(self):
         grid = {"mutation_chance": [0.1], "selection": ["random"], "crossover_chance": [0.5]}

@@ -1,5 +1,5 @@
-"""What people ask of programs for evolution, in small: each wish with two of its siblings. Every case either works or is
-refused with what to do."""
+"""What people ask of programs for evolution, in small: each with two siblings. Each case works, or its refusal says
+what to write."""
 import pathlib
 import tempfile
 import unittest
