@@ -102,7 +102,10 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
     case v1::PARAMETER_KIND_REAL: {
         const auto real = number_from<double>(word);
         if (!real || !std::isfinite(*real)) {
-            return wrong();
+            std::string with_point{word};
+            std::ranges::replace(with_point, ',', '.');
+            const bool has_comma = with_point != word && number_from<double>(with_point);
+            return wrong(has_comma ? "; write a point in a decimal number: " + with_point : "");
         }
         value.set_real(*real);
         return value;

@@ -5,6 +5,7 @@
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
 #include "server/log/log.h"
+#include "server/network/http_rules.h"
 #include "server/runtime/random_ids.h"
 #include "server/simulation/founders.h"
 
@@ -72,6 +73,13 @@ void add_http_options(Command& command, ServeOptions& options) {
         .one_at_a_time()
         .check(needs_http)
         .check(host_name_problem);
+    command
+        .add_option("--embed-in", &options.embedders,
+                    "Origin whose pages may show the page in a frame, such as http://localhost:8888 of Jupyter; may be "
+                    "repeated")
+        .one_at_a_time()
+        .check(needs_http)
+        .check(network::embedder_problem);
 }
 
 base::Result<std::optional<access::TlsFiles>> tls_files(const ServeOptions::Tls& tls) {
@@ -107,7 +115,8 @@ base::Result<network::ServerOptions> serving(std::variant<network::LiveWorlds, n
     if (options.web || options.http_port) {
         listeners.http = {.bind_address = options.http_bind_address,
                           .port = options.http_port.value_or(page_port),
-                          .host_names = options.http_host_names};
+                          .host_names = options.http_host_names,
+                          .embedders = options.embedders};
     }
     return network::ServerOptions{.worlds = std::move(worlds),
                                   .listeners = std::move(listeners),

@@ -27,7 +27,7 @@ struct ServeOptions {
     std::uint16_t port = codec::default_port;
     bool web = false;
     std::optional<std::uint16_t> http_port;
-    std::vector<std::string> http_host_names;
+    std::vector<std::string> http_host_names, embedders;
     std::string log_level = "info", log_format = "text";
     SharingOptions sharing;
     std::string experiment_file, population_file;

@@ -352,7 +352,7 @@ asio::awaitable<bool> HttpConnection::send(HttpAnswer answer, unsigned version, 
     if (head.count(http::field::cache_control) == 0) {
         head.set(http::field::cache_control, "no-store");
     }
-    head.set("Content-Security-Policy", content_security_policy(host_, tls_));
+    head.set("Content-Security-Policy", content_security_policy(host_, tls_, service_.embedders));
     head.set("X-Content-Type-Options", "nosniff");
     head.set("Cross-Origin-Opener-Policy", "same-origin");
     head.set("Cross-Origin-Resource-Policy", "same-origin");

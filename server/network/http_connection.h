@@ -61,7 +61,8 @@ struct HttpService {
     LimitCounters& limit_counters;
     metrics::Traffic& traffic;
     HostNames host_names;
-    asio::ssl::context* tls = nullptr; // nullptr: no TLS
+    asio::ssl::context* tls = nullptr;       // nullptr: no TLS
+    std::vector<std::string> embedders = {}; // origins whose pages may show the page in a frame
     std::vector<HttpFile> files = {};
     /// The key is the path of a page, such as "/metrics".
     std::map<std::string, HttpPage, std::less<>> pages = {};

@@ -127,16 +127,37 @@ bool is_own_origin(std::string_view origin, std::string_view host, bool tls) {
     return is("https://") || (!tls && is("http://"));
 }
 
-std::string content_security_policy(std::string_view host, bool tls) {
+std::string content_security_policy(std::string_view host, bool tls, const std::vector<std::string>& embedders) {
     std::string sessions;
     if (!host.empty()) {
         sessions = (tls ? " wss://" : " ws://" + std::string{host} + " wss://") + std::string{host};
     }
+    std::string ancestors = embedders.empty() ? " 'none'" : "";
+    for (const std::string& embedder : embedders) {
+        ancestors += ' ' + embedder;
+    }
     return "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; img-src 'self' blob:; "
            "connect-src 'self'" +
-           sessions +
-           "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; require-trusted-types-for 'script'; "
-           "trusted-types evod";
+           sessions + "; base-uri 'none'; form-action 'none'; frame-ancestors" + ancestors +
+           "; require-trusted-types-for 'script'; trusted-types evod";
+}
+
+std::string embedder_problem(const std::string& origin) {
+    std::string_view host = origin;
+    for (const std::string_view scheme : {"https://", "http://"}) {
+        if (host.starts_with(scheme)) {
+            host.remove_prefix(scheme.size());
+            break;
+        }
+    }
+    const bool has_scheme = host.size() < origin.size();
+    const bool has_all_ports = host.ends_with(":*");
+    host.remove_suffix(has_all_ports ? 2 : 0);
+    const bool has_port = host.find(':') != std::string_view::npos; // a policy cannot contain an IPv6 address
+    return has_scheme && !host.starts_with('[') && !(has_all_ports && has_port) && name_of_host(host)
+               ? ""
+               : "got " + origin + ", allowed the origin of a page, such as http://localhost:8888, or " +
+                     "http://localhost:* for all its ports";
 }
 
 bool accepts_gzip(const std::optional<std::string>& accept_encoding) {

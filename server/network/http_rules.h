@@ -45,8 +45,12 @@ bool is_own_origin(std::string_view origin, std::string_view host, bool tls);
 
 /// The value of Content-Security-Policy. It allows nothing but files and sessions of this server.
 ///
-/// host  the allowed value of Host; empty: no sessions.
-std::string content_security_policy(std::string_view host, bool tls);
+/// host       the allowed value of Host; empty: no sessions.
+/// embedders  the origins whose pages may show this page in a frame, as embedder_problem() allows them.
+std::string content_security_policy(std::string_view host, bool tls, const std::vector<std::string>& embedders);
+
+/// What is wrong with an origin that may embed the page; empty: nothing. http://localhost:* means all ports.
+std::string embedder_problem(const std::string& origin);
 
 /// Whether a client with this Accept-Encoding takes gzip. An absent field accepts everything.
 bool accepts_gzip(const std::optional<std::string>& accept_encoding);

@@ -279,7 +279,8 @@ base::Result<void> Server::open_http() {
     HttpService service{.limit_counters = limit_counters_,
                         .traffic = host_.traffic,
                         .host_names = *std::move(host_names),
-                        .tls = tls_.get()};
+                        .tls = tls_.get(),
+                        .embedders = options->embedders};
     service.pages["/metrics"] = {.make = [this]() -> asio::awaitable<HttpAnswer> {
                                      co_return HttpAnswer{.text = metrics::to_prometheus(metrics()),
                                                           .type = metrics::prometheus_content_type};

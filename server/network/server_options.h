@@ -28,6 +28,7 @@ struct HttpOptions {
     // Names by which browsers may address the server, besides its own: of a proxy, of a DNS entry. If there is one,
     // every client needs a token: behind a proxy on the same machine all clients have a loopback address.
     std::vector<std::string> host_names = {};
+    std::vector<std::string> embedders = {}; // origins whose pages may show the page in a frame
 };
 
 /// Where clients connect, and which clients the server admits.

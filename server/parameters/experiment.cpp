@@ -237,7 +237,10 @@ class ExperimentReader {
         } else if (auto value = parameter_value_of(member.value)) {
             assignments_.push_back({member.name, *std::move(value)});
         } else {
-            refuse(member, "a number, true, false or a string");
+            refuse(member, std::string{"a number, true, false or a string"} +
+                               (member.name.starts_with("free_gene_")
+                                    ? "; the list free_genes gives each gene values of its own"
+                                    : ""));
         }
     }
 

@@ -23,7 +23,7 @@ PRINTS = {
     "watch_a_run": "mean health",
     "change_at_generation_20": "generation 22: best",
     "compare_selection": "truncation: ",
-    "sweep_heat_map": "mutation_chance 0.40:",
+    "sweep_heat_map": "mutation_step",
     "fork": "generation 3 of both is the same",
     "follow_a_lineage": "of generation 1",
 }

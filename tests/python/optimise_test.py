@@ -6,6 +6,7 @@ import os
 import threading
 import unittest
 import warnings
+from unittest import mock
 
 import numpy
 
@@ -103,11 +104,17 @@ class Optimise(unittest.TestCase):
             def isatty(self):
                 return True
 
-        for kind, ends in ((Terminal, 1), (io.StringIO, 3)):
-            with contextlib.redirect_stderr(kind()) as shown:
-                self.world().evaluate(first_gene, generations=3, progress=True)
-            self.assertEqual(shown.getvalue().count("\n"), ends)
-            self.assertIn("generation 3 of 3: best -", shown.getvalue())
+        for kind, in_notebook, ends in ((Terminal, False, 1), (io.StringIO, False, 3), (io.StringIO, True, 1)):
+            with mock.patch("evod.progress.in_notebook", return_value=in_notebook):
+                with contextlib.redirect_stderr(kind()) as shown:
+                    world = self.world()
+                    world.evaluate(first_gene, generations=3, progress=True)
+                self.assertEqual(shown.getvalue().count("\n"), ends)
+                self.assertRegex(shown.getvalue(), "generation 3 of 3: best -.*, [0-9]+ evaluations, [0-9.]+ s")
+                with contextlib.redirect_stderr(kind()) as shown, evod.local(seed=1) as lab:
+                    lab.world().run(3, progress=True).wait()
+                self.assertEqual(shown.getvalue().count("\n"), ends)
+                self.assertRegex(shown.getvalue(), "generation 3 of 3: best .* alive, [0-9.]+ s")
 
     # ---- the end ----------------------------------------------------------------------------------------------------
 

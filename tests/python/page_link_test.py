@@ -1,13 +1,17 @@
 """Links to the page: Python and evoctl print the same. EVOCTL names the other program."""
+import contextlib
+import io
 import os
 import re
 import subprocess
 import tempfile
 import unittest
+import urllib.request
 import warnings
+from unittest import mock
 
 import evod
-from evod import page_link
+from evod import notebook, page_link
 from evod.endpoint import Endpoint
 from evod.v1 import session_pb2, world_pb2
 from support import Server
@@ -93,9 +97,44 @@ class Links(unittest.TestCase):
                          "https://x.example/evod/#world=default")
 
     def test_a_server_without_a_page_is_named(self):
-        with evod.local() as lab, self.assertRaisesRegex(evod.FailedPrecondition,
-                                                         "has no page .*: start it with --web"):
+        server = Server("--keep-nothing")
+        self.addCleanup(server.end)
+        with evod.connect(f"localhost:{server.port}") as lab, self.assertRaisesRegex(
+                evod.FailedPrecondition, "has no page .*: start it with --web"):
             lab.world().link()
+
+
+class Notebooks(unittest.TestCase):
+    def policy(self, lab):
+        """What the private server answers about its page."""
+        request = urllib.request.Request(lab.world().link(live=True), headers={"Accept-Encoding": "gzip"})
+        with urllib.request.urlopen(request) as answer:
+            return answer.headers["Content-Security-Policy"]
+
+    def test_only_notebooks_embed_the_page_of_their_server(self):
+        with evod.local() as lab:
+            self.assertIn("frame-ancestors 'none'", self.policy(lab))
+        with mock.patch("evod.local_server.in_notebook", return_value=True), evod.local() as lab:
+            self.assertIn("frame-ancestors http://localhost:* http://127.0.0.1:*;", self.policy(lab))
+
+    def test_a_world_is_shown_in_a_frame(self):
+        with evod.local(seed=1, speed=10) as lab:
+            world = lab.world()
+            with mock.patch("evod.lab.in_notebook", return_value=True):
+                frame = world.show(width=800, height="30em")
+            self.assertEqual(repr(frame), world.link(live=True))
+            self.assertIn(f'<iframe src="{frame.link}" width="800" height="30em"', frame._repr_html_())
+            world.run(generations=2).wait()
+            with world.open_replay(1, 5) as replay, contextlib.redirect_stdout(io.StringIO()) as printed:
+                html = replay.show()._repr_html_()
+            self.assertRegex(printed.getvalue(), "#world=default&generation=1&tick=5\n$")
+            self.assertIn("#world=default&amp;generation=1&amp;tick=5", html)
+
+    def test_the_kernel_of_a_notebook_is_recognised(self):
+        self.assertFalse(notebook.in_notebook())
+        for shell, is_notebook in ((None, False), (mock.Mock(spec=[]), False), (mock.Mock(spec=["kernel"]), True)):
+            with mock.patch.dict("sys.modules", IPython=mock.Mock(get_ipython=lambda shell=shell: shell)):
+                self.assertEqual(notebook.in_notebook(), is_notebook)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,6 @@
 """Plots of islands and runs: the drawn data are those of the snapshot or the statistics."""
+import dataclasses
+import pathlib
 import tempfile
 import unittest
 
@@ -34,6 +36,57 @@ class Plots(unittest.TestCase):
             genes = world.plot_genes().lines
             numpy.testing.assert_allclose([line.get_ydata() for line in genes],
                                           numpy.array([g.genes for g in generations]).T)
+
+    def test_a_sweep_of_one_parameter_is_curves(self):
+        sweep = evod.sweep({"island_count": 2, "population_size": 10, "generation_s": 2}, generations=4, replicates=3,
+                           seed=1, grid={"selection": ["random", "tournament"]})
+        axes = sweep.plot()
+        self.assertEqual([line.get_label() for line in axes.lines], ["random", "tournament"])
+        last = axes.lines[1].get_ydata()[-1]
+        totals = sweep.totals
+        expected = totals[(totals.selection == "tournament") & (totals.generation == 4)].fitness_mean.mean()
+        self.assertAlmostEqual(last, expected)
+        self.assertEqual(len(axes.collections), 2)
+        self.assertIn("diversity", sweep.plot("diversity").get_ylabel())
+        self.assertIn("data:image/png", sweep._repr_html_())
+        with self.assertRaisesRegex(evod.InvalidArgument, "measure"):
+            sweep.plot("size")
+
+    def test_a_sweep_of_two_parameters_is_a_heat_map(self):
+        world = {"population_size": 10, "generation_s": 1}
+        grid = {"mutation_chance": [0.1, 0.2, 0.3], "selection": ["random", "tournament"]}
+        sweep = evod.sweep(world, generations=2, replicates=2, seed=1, grid=grid)
+        axes = sweep.plot()
+        cells = sweep.last.groupby(["mutation_chance", "selection"], sort=False).fitness_mean.mean()
+        numpy.testing.assert_allclose(axes.images[0].get_array(), cells.unstack())
+        self.assertEqual([label.get_text() for label in axes.get_yticklabels()], ["0.1", "0.2", "0.3"])
+        self.assertEqual([label.get_text() for label in axes.get_xticklabels()], ["random", "tournament"])
+        points = {"samples": 5, "parameters": {name: {"from": 0.1, "to": 0.4}
+                                               for name in ("mutation_chance", "crossover_chance")}}
+        scattered = evod.sweep(world, generations=2, seed=1, latin_hypercube=points).plot()
+        self.assertEqual(len(scattered.collections[0].get_offsets()), 5)
+
+    def test_a_stored_sweep_is_the_sweep(self):
+        world = {"population_size": 10, "generation_s": 1}
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(evod.FileNotFound, "runs.csv"):
+                evod.open_sweep(folder)
+            made = evod.sweep(world, generations=2, seeds=[5, 2**64 - 1], out=folder,
+                              grid={"mutation_chance": [0.1, 0.2], "selection": ["random", "tournament"]})
+            for path in folder, folder + "/runs.csv":
+                stored = evod.open_sweep(path)
+                self.assertEqual(dataclasses.astuple(stored), dataclasses.astuple(made))
+            numpy.testing.assert_array_equal(stored.plot().images[0].get_array(), made.plot().images[0].get_array())
+            (pathlib.Path(folder) / "other.csv").write_text("a,b\n1,2\n")
+            with self.assertRaisesRegex(evod.DamagedData, "not the table of a sweep"):
+                evod.open_sweep(folder + "/other.csv")
+
+    def test_a_sweep_of_three_parameters_has_no_plot(self):
+        grid = {"mutation_chance": [0.1], "selection": ["random"], "crossover_chance": [0.5]}
+        sweep = evod.sweep({"population_size": 10, "generation_s": 1}, generations=2, seed=1, grid=grid)
+        with self.assertRaisesRegex(evod.FailedPrecondition, "3 swept parameters"):
+            sweep.plot()
+        self.assertNotIn("<img", sweep._repr_html_())
 
     def test_selection_plots_show_all_islands(self):
         experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring",

@@ -455,6 +455,22 @@ class Pages(Case):
             self.assertIn(f"connect-src 'self' ws://{host} wss://{host}", policy)
             self.assertIn("require-trusted-types-for 'script'", policy)
 
+    def test_only_named_origins_may_embed_the_page(self):
+        for options, ancestors in (((), "'none'"),
+                                   (("--embed-in", "http://localhost:8888"), "http://localhost:8888"),
+                                   (("--embed-in", "http://localhost:*", "--embed-in", "https://hub.example"),
+                                    "http://localhost:* https://hub.example")):
+            server = self.serve(*options)
+            self.port(server)
+            for path in ("/", "/healthz"):
+                policy = self.head(server, path).headers["Content-Security-Policy"].split("; ")
+                self.assertIn(f"frame-ancestors {ancestors}", policy)
+            server.end()
+        done = waiting.run([EVOD, "--web", "--embed-in", "localhost:8888"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--embed-in: got localhost:8888, allowed the origin of a page, such as http://localhost:8888",
+                      done.stderr)
+
     def head(self, server, path, **fields):
         return self.get(server, path, "HEAD", headers=fields)
 

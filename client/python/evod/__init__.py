@@ -83,7 +83,7 @@ from evod.results import (
 from evod.run_file import RunFile, open_run
 from evod.snapshots import Box, Boxes, Item, Items, Organism, Organisms, Snapshot, Tile
 from evod.streams import Events, Run, Snapshots
-from evod.sweeps import Sweep
+from evod.sweeps import Sweep, open_sweep
 from evod.version import __version__
 
 PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunState.TERMINATED, RunState.WAITING
@@ -106,6 +106,6 @@ __all__ = [
     "Solution", "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated",
            "Unavailable",
     "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "hypervolume",
-           "local", "nondominated", "open_run",
+           "local", "nondominated", "open_run", "open_sweep",
     "run", "run_table", "sweep",
 ]  # fmt: skip

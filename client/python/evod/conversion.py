@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import Any, Callable, Mapping, Sequence
+from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import google.protobuf.descriptor
 import google.protobuf.message
@@ -22,8 +22,18 @@ def _activations(values: Sequence[float]) -> Any:
     return numpy.array(values, numpy.float32)
 
 
+class _Results:
+    """The results of messages, each converted when it is read."""
+
+    def __init__(self, messages: Sequence[Any]) -> None:
+        self._messages = messages
+
+    def __iter__(self) -> Iterator[Any]:
+        return map(result, self._messages)
+
+
 _OF_GENES: Mapping[str, Callable[[Any, Sequence[str]], Any]] = {
-    "GenerationStatistics.genes": lambda genes, names: ByGene((result(gene) for gene in genes), names),
+    "GenerationStatistics.genes": lambda genes, names: ByGene(_Results(genes), names),
     "OrganismInfo.genes": _genes,
     "Descendant.genes": _genes,
     "Descendant.first_genes": _genes,

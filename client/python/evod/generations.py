@@ -292,7 +292,8 @@ class History(list[Generation]):
         ]
         if len(rows) > 2 * _ROWS_SHOWN:
             rows[_ROWS_SHOWN:-_ROWS_SHOWN] = [("…",) * len(rows[0])]
-        return html_table(("generation", "best", "mean", "worst", "alive", "organisms"), rows, repr(self)[1:-1])
+        table = html_table(("generation", "best", "mean", "worst", "alive", "organisms"), rows, repr(self)[1:-1])
+        return table + plotting.image_html(self.plot)
 
 
 _ROWS_SHOWN = 10  # at each end of a long history in a notebook

@@ -1,7 +1,7 @@
 """Genes as arrays with names."""
 from __future__ import annotations
 
-from typing import Any, Iterable, SupportsIndex, TypeVar, overload
+from typing import Any, Iterable, Iterator, Sequence, SupportsIndex, TypeVar, overload
 
 import numpy
 
@@ -137,18 +137,42 @@ def _plain(array: Any) -> Any:
     return array.view(numpy.ndarray) if isinstance(array, Genes) else array
 
 
-class ByGene(tuple[T, ...]):
-    """A tuple with one element for each gene, in the order of `names`, that can also be indexed with a name."""
+class ByGene(Sequence[T]):
+    """A sequence with one element for each gene, in the order of `names`, that can also be indexed with a name.
+
+    The elements are made when the first one is read, because a generation of many genes has many numbers.
+    """
 
     names: tuple[str, ...]  #: the names of the genes
 
-    def __new__(cls, items: Iterable[Any], names: Iterable[str] = GENE_NAMES) -> ByGene[T]:
-        by_gene = super().__new__(cls, items)
-        by_gene.names = tuple(names)
-        return by_gene
+    def __init__(self, items: Iterable[T], names: Iterable[str] = GENE_NAMES) -> None:
+        self.names = tuple(names)
+        self._unread: Iterable[T] | None = items
+        self._items: tuple[T, ...] = ()
 
-    def __getnewargs__(self) -> tuple[Any, ...]:
-        return tuple(self), self.names
+    def _read(self) -> tuple[T, ...]:
+        unread = self._unread
+        if unread is not None:
+            self._items, self._unread = tuple(unread), None
+        return self._items
+
+    def __len__(self) -> int:
+        return len(self._read())
+
+    def __iter__(self) -> Iterator[T]:
+        return iter(self._read())
+
+    def __eq__(self, other: object) -> bool:
+        return self._read() == (other._read() if isinstance(other, ByGene) else other)
+
+    def __hash__(self) -> int:
+        return hash(self._read())
+
+    def __repr__(self) -> str:
+        return repr(self._read())
+
+    def __reduce__(self) -> Any:
+        return ByGene, (self._read(), self.names)
 
     @overload
     def __getitem__(self, key: SupportsIndex | str) -> T: ...
@@ -158,5 +182,5 @@ class ByGene(tuple[T, ...]):
         if isinstance(key, str):
             if key not in self.names:
                 raise KeyError(f"there is no gene {key!r}; the genes are: {', '.join(self.names)}")
-            return super().__getitem__(self.names.index(key))
-        return super().__getitem__(key)
+            return self._read()[self.names.index(key)]
+        return self._read()[key]

@@ -12,6 +12,7 @@ import threading
 from typing import IO, Mapping
 
 from evod.experiment import Experiment, file_of, write_json
+from evod.notebook import LOCAL_ORIGINS, in_notebook
 from evod.program import environment, failure, find_program
 
 _STOP_TIMEOUT_S = 30  # time for the server to write its runs; after this time it is killed
@@ -33,7 +34,8 @@ def start(
 ) -> Server:
     """Starts a server with the options of evod.local() and waits until it accepts connections. Raises Error if it
     fails."""
-    command = [find_program(program), "--port", "0"]
+    command = [find_program(program), "--port", "0", "--web", "--http-port", "0"]
+    command += [word for origin in LOCAL_ORIGINS for word in ("--embed-in", origin)] if in_notebook() else []
     command += [] if seed is None else ["--seed", str(seed)]
     command += [] if threads is None else ["--threads", str(threads)]
     with tempfile.TemporaryDirectory(prefix="evod-") as folder:

@@ -10,7 +10,7 @@ import numpy.typing
 from evod import plotting
 from evod.errors import wrong_argument
 from evod.genes import Genes
-from evod.tables import html_table, number_text, pandas
+from evod.tables import fitness_text, html_table, pandas
 
 Array = numpy.typing.NDArray[Any]
 
@@ -126,7 +126,7 @@ class Front:
 
     def _repr_html_(self) -> str:
         columns = self._columns()
-        rows = [tuple(map(number_text, row)) for row in zip(*columns.values())]
+        rows = [tuple(map(fitness_text, row)) for row in zip(*columns.values())]
         return html_table(tuple(columns), rows, repr(self)[1:-1])
 
 

@@ -6,6 +6,7 @@ import dataclasses
 import difflib
 import math
 import operator
+import re
 from typing import Iterator, Mapping, Union
 
 import numpy
@@ -58,6 +59,22 @@ class Description:
         kinds = {"real": (int, float, numpy.number), "count": (int, numpy.integer), "choice": (str,)}
         right_kind = isinstance(value, kinds.get(self.kind, ())) and not isinstance(value, (bool, numpy.bool_))
         return text_of(value) if right_kind else repr(value)
+
+    def violation(self, value: object, field: str = "") -> Violation:
+        """What is wrong with a refused value, and what to write in its place."""
+        hint = ""
+        if isinstance(value, str) and self.kind in ("real", "count"):
+            if re.fullmatch(r"\s*[+-]?\d+,\d+\s*", value):
+                hint = f"; write a point in a decimal number: {value.strip().replace(',', '.')}"
+            elif re.fullmatch(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", value):
+                hint = "; write it without quotation marks"
+        elif isinstance(value, str) and self.kind == "flag" and value.lower() in ("true", "false"):
+            hint = f"; write {value.capitalize()} without quotation marks"
+        elif isinstance(value, (list, tuple, numpy.ndarray)):
+            hint = "; evod.sweep(grid=…) runs a world with each value of a list"
+            if self.name.startswith("free_gene_"):
+                hint = "; free_genes as a list of evod.genes.Real(…) gives each gene values of its own"
+        return Violation(field or self.name, self.allowed + hint, self.got(value))
 
     def message(self, value: object) -> world_pb2.ParameterValue | None:
         """Converts a value to the message to send; returns None if the value is not allowed."""
@@ -168,7 +185,7 @@ class Registry(Mapping[str, Description]):
                 hint = _HINTS.get(name) or self._allowed_instead_of(name)
                 violations.append(Violation(name, hint, "an unknown name"))
             elif (message := description.message(value)) is None:
-                violations.append(Violation(name, description.allowed, description.got(value)))
+                violations.append(description.violation(value))
             else:
                 made.append(world_pb2.ParameterAssignment(name=name, value=message))
         if violations:
@@ -200,12 +217,13 @@ class Registry(Mapping[str, Description]):
                 except (TypeError, ValueError):
                     number = 0
                 if not 1 <= number < 2**64:
-                    violations.append(Violation(name, "generations from 1 on", repr(generation)))
+                    allowed = "generations from 1 on; there is no period, so list each generation: " \
+                              "{generation: value for generation in range(1, 100, 5)}"
+                    violations.append(Violation(name, allowed, repr(generation)))
                 elif number == 1:
                     first[name] = of_generation
                 elif (message := description.message(of_generation)) is None:
-                    field = f"{name} at generation {number}"
-                    violations.append(Violation(field, description.allowed, description.got(of_generation)))
+                    violations.append(description.violation(of_generation, f"{name} at generation {number}"))
                 else:
                     later.append(world_pb2.ScheduledValue(name=name, generation=number, value=message))
         try:

@@ -194,6 +194,8 @@ class GenerationStream:
         self._began = False
         self._over = False  # whether the run has ended; next() then returns only the generations in _ready
         self._awaited: world_pb2.AwaitedFitness | None = None  # the fitness for which the world waits, for step()
+        # a generation, and those of its islands that rated_step() has not returned
+        self._to_rate: tuple[int, list[int]] = (0, [])
         self.is_open = True  # whether the subscription has not ended
         self.reason = ""  # why the run has ended: "generations", "pause", or a termination criterion of the world
 
@@ -230,6 +232,25 @@ class GenerationStream:
                 self.close()
                 return None
             yield from self._take((yield from next_event(self._subscription)))
+
+    def rated_step(self, sent: Plan[bool] | None) -> Plan[Generation | Population | None]:
+        """Like next(), but also returns each population for whose fitness the world waits.
+
+        sent  sends the fitness of the population that was returned before: one plan is faster than two.
+        """
+        if sent is not None and not (yield from sent):
+            self._to_rate[1].clear()
+        while True:
+            generation, islands = self._to_rate
+            while islands:
+                found = yield from population(self._world, islands.pop(0), self.info.gene_names)
+                if found.generation == generation:
+                    return found
+                islands.clear()  # another client has rated this generation
+            step = yield from self.step()
+            if not isinstance(step, world_pb2.AwaitedFitness):
+                return step
+            self._to_rate = step.generation, list(step.islands)
 
     def _take(self, event: stream_pb2.Event) -> Plan[None]:
         kind = event.WhichOneof("kind")

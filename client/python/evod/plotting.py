@@ -5,7 +5,9 @@ matplotlib is imported on first use, because the rest of the package works witho
 """
 from __future__ import annotations
 
-from typing import Any, Mapping, Protocol, Sequence
+import base64
+import io
+from typing import Any, Callable, Mapping, Protocol, Sequence
 
 import numpy
 import numpy.typing
@@ -331,6 +333,64 @@ def _positions(rows: list[list[_Name]], parents: dict[_Name, list[_Name]]) -> di
                     spans.setdefault(parent, []).append(x[name])
             x.update((parent, (min(span) + max(span)) / 2) for parent, span in spans.items())
     return x
+
+
+# ---- a sweep
+# ------------------------------------------------------------------------------------------------------------
+
+
+def plot_sweep(totals: Any, parameters: Sequence[str], measure: str, ax: Any = None) -> Any:
+    """Plots a measure of a sweep of one or two parameters. `totals` is Sweep.totals.
+
+    One parameter: a curve over the generations for each value, the mean of the replicates with a band of one standard
+    error. Two: the mean of the replicates in their last generations, as a heat map, or as points if the values are not
+    a grid.
+    """
+    if len(parameters) not in (1, 2):
+        swept = f"{len(parameters)} swept parameters: {', '.join(parameters)}"
+        raise FailedPrecondition(f"plot: got {swept}, allowed one or two: plot sweep.totals with functions of yours")
+    ax = _axes(ax)
+    if len(parameters) == 1:
+        for value, rows in totals.groupby(parameters[0], sort=False):
+            replicates = rows.groupby("generation")[measure]
+            mean, error = replicates.mean(), replicates.sem().fillna(0)
+            (line,) = ax.plot(mean.index, mean, label=str(value))
+            ax.fill_between(mean.index, mean - error, mean + error, alpha=0.2, linewidth=0, color=line.get_color())
+        ax.set(xlabel="generation", ylabel=measure)
+        ax.xaxis.get_major_locator().set_params(integer=True)
+        ax.legend(frameon=False, title=parameters[0])
+        return ax
+    down, across = parameters
+    newest = totals.groupby(["cell", "replicate"]).generation.transform("max")
+    last = totals[totals.generation == newest].groupby([down, across], sort=False)[measure].mean()
+    grid = last.unstack()
+    if grid.isna().any(axis=None) and all(numpy.issubdtype(values.dtype, numpy.number)
+                                          for values in (grid.index, grid.columns)):
+        shown = ax.scatter(last.index.get_level_values(1), last.index.get_level_values(0), c=last, cmap="viridis")
+    else:
+        shown = ax.imshow(grid, cmap="viridis", aspect="auto", origin="lower")
+        ax.set_xticks(range(grid.shape[1]), [_label(value) for value in grid.columns])
+        ax.set_yticks(range(grid.shape[0]), [_label(value) for value in grid.index])
+    ax.set(xlabel=across, ylabel=down)
+    ax.figure.colorbar(shown, ax=ax, label=f"{measure} in the last generation")
+    return ax
+
+
+def _label(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def image_html(plot: Callable[[], Any]) -> str:
+    """Returns the figure that a function draws, as HTML for notebooks; empty without matplotlib, or if there is nothing
+    to draw."""
+    try:
+        figure = plot().figure
+    except (MissingPackage, FailedPrecondition):
+        return ""
+    png = io.BytesIO()
+    figure.savefig(png, format="png", bbox_inches="tight")
+    pyplot().close(figure)  # otherwise notebooks show it twice
+    return f'<img alt="" src="data:image/png;base64,{base64.b64encode(png.getvalue()).decode()}">'
 
 
 def _by_generation(columns: Mapping[str, Any], name: str, over: Any) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ from typing import Callable, Iterator
 
 from evod.errors import MissingPackage
 from evod.generations import Generation
-from evod.tables import fitness_text
+from evod.notebook import in_notebook
 
 
 @contextlib.contextmanager
@@ -34,7 +34,8 @@ def progress_bar(what: str, total: float | None, shown: bool | None) -> Iterator
 
 
 class ProgressLine:
-    """The last ended generation in one line on standard error. A terminal shows each in place of the one before."""
+    """The last ended generation in one line on standard error. A terminal and a notebook show each in place of the one
+    before."""
 
     def __init__(self, last: int | None) -> None:
         self._last = last  # the number of the last generation, if it is known
@@ -43,11 +44,10 @@ class ProgressLine:
 
     def show(self, generation: Generation) -> None:
         """Shows a generation."""
+        which, numbers = str(generation).split(":", 1)
         of = "" if self._last is None else f" of {self._last}"
-        line = (f"generation {generation.number}{of}: best {fitness_text(generation.best)}, "
-                f"mean {fitness_text(generation.mean)}, {generation.evaluation_count} evaluations, "
-                f"{time.monotonic() - self._began:.1f} s")
-        is_terminal = sys.stderr.isatty()
+        line = f"{which}{of}:{numbers}, {time.monotonic() - self._began:.1f} s"
+        is_terminal = sys.stderr.isatty() or in_notebook()
         sys.stderr.write(f"\r{line:<{self._width}}" if is_terminal else line + "\n")
         sys.stderr.flush()
         self._width = len(line) if is_terminal else 0

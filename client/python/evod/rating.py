@@ -7,7 +7,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from typing import Any, Callable, Mapping, Sequence
+from typing import Any, Callable, Mapping, NamedTuple, Sequence
 
 import numpy
 import numpy.typing
@@ -66,11 +66,12 @@ class Rater:
         self._objectives = objectives
         self._parts: list[tuple[Genes, Array]] = []  # of the islands of this generation, for its front
         self.evaluation_count = 0
-        self._hall: dict[bytes, Solution] = {}  # best first
-        self._best: tuple[int, Solution] | None = None  # the best solution of the generation with this number
+        self._hall: dict[bytes, _Rated] = {}  # by genes, best first
+        self._best: tuple[bytes, _Rated] | None = None  # the best one of the last generation that was rated
+        self._names: Sequence[str] = ()  # of the genes
         # The fitness by genes of the generation before and of this one; the islands of a generation are rated in turn.
-        self._before: dict[bytes, Array] = {}
-        self._now: tuple[int, dict[bytes, Array]] = (0, {})
+        self._before: dict[bytes, Any] = {}
+        self._now: tuple[int, dict[bytes, Any]] = (0, {})
 
     def rate(self, population: Population) -> tuple[Array, Array | None]:
         """Calls the function with the organisms of an island. Returns the fitness that evod needs, of shape (count,) or
@@ -81,7 +82,8 @@ class Rater:
         if population.generation != self._now[0]:
             self._before, self._now, self._parts = self._now[1], (population.generation, {}), []
         genes = population.genes.copy()
-        keys = [row.tobytes() for row in numpy.ascontiguousarray(genes)]
+        self._names = genes.names or ()
+        keys = _keys_of(genes)
         is_new = numpy.array([self._has_bodies or key not in self._before for key in keys], bool)
         life = dataclasses.replace(population.life, is_new=is_new)
         rated = is_new if self._only_new else numpy.ones(len(keys), bool)
@@ -90,28 +92,29 @@ class Rater:
             fitness[row] = self._before[keys[row]]
         repaired = None
         if rated.any():
-            shown = Genes(genes[rated], genes.names or ())
+            shown = Genes(genes[rated], self._names)
             fitness[rated], repaired = self._call(shown, life.of(rated), numpy.flatnonzero(rated))
         self.evaluation_count += int(rated.sum())
         whole = None
         if repaired is not None:
             genes[rated] = repaired
-            keys = [row.tobytes() for row in numpy.ascontiguousarray(genes)]
+            keys = _keys_of(genes)
             whole = numpy.asarray(genes)
-        self._now[1].update(zip(keys, fitness))
+        self._now[1].update(zip(keys, fitness.tolist()))
         if self._objectives > 1:
             self._parts.append((genes, fitness))
         else:
-            self._remember(genes, keys, fitness, life)
+            self._remember(keys, fitness, life)
         return (0.0 - fitness if self.minimize else fitness), whole
 
     def completed(self, generation: Generation) -> Generation:
         """Returns an ended generation in the sign of the function, with what this Rater knows about it."""
         in_sign = generation.negated() if self.minimize else generation
-        best = self._best[1] if self._best is not None and self._best[0] == generation.number else None
-        front = None
+        best = front = None
+        if self._best is not None and self._best[1].generation == generation.number:
+            best = self._solution(*self._best)
         if self._parts and self._now[0] == generation.number:
-            genes = Genes(numpy.concatenate([part[0] for part in self._parts]), self._parts[0][0].names or ())
+            genes = Genes(numpy.concatenate([part[0] for part in self._parts]), self._names)
             front = front_of(generation.number, genes, numpy.concatenate([part[1] for part in self._parts]),
                              self.minimize)
         return dataclasses.replace(in_sign, evaluation_count=self.evaluation_count, best_solution=best, front=front)
@@ -123,7 +126,7 @@ class Rater:
                 "of several objectives, no single organism is the best: evaluation.front() returns the best ones")
         if not 1 <= k <= HALL_MAX:
             raise wrong_argument("k", f"1 to {HALL_MAX}; world.hall_of_fame(k) returns more", k)
-        return list(self._hall.values())[:k]
+        return [self._solution(*item) for item in list(self._hall.items())[:k]]
 
     def _call(self, genes: Genes, life: Life, organisms: Array) -> tuple[Array, Array | None]:
         where = f"in generation {life.generation}, island {life.island}"
@@ -176,25 +179,39 @@ class Rater:
                 f"return a penalty: a number somewhat {worse} than those of all others", faults)
         return fitness
 
-    def _remember(self, genes: Genes, keys: Sequence[bytes], fitness: Array, life: Life) -> None:
-        cost = fitness if self.minimize else -fitness
-        for place, i in enumerate(numpy.argsort(cost, kind="stable")[:HALL_MAX]):
-            found = Solution(genes[i].copy(), float(fitness[i]), life.generation, life.island, int(i))
-            if place == 0 and (self._best is None or self._best[0] != life.generation
-                               or self._is_better(found, self._best[1])):
-                self._best = life.generation, found
-            last = next(reversed(self._hall.values())) if len(self._hall) >= HALL_MAX else None
-            if last is not None and not self._is_better(found, last):
+    def _remember(self, keys: Sequence[bytes], fitness: Array, life: Life) -> None:
+        costs = fitness if self.minimize else -fitness
+        last = next(reversed(self._hall.values())).cost if len(self._hall) >= HALL_MAX else math.inf
+        for place, i in enumerate(numpy.argsort(costs, kind="stable")[:HALL_MAX].tolist()):
+            found = _Rated(float(costs[i]), float(fitness[i]), life.generation, life.island, i)
+            if place == 0 and (self._best is None or self._best[1].generation != life.generation
+                               or found.cost < self._best[1].cost):
+                self._best = keys[i], found
+            if found.cost >= last:
                 break
-            key = keys[i]
-            if key in self._hall and not self._is_better(found, self._hall[key]):
-                continue
-            self._hall[key] = found
-            ranked = sorted(self._hall.items(), key=lambda item: item[1].fitness if self.minimize else -item[1].fitness)
-            self._hall = dict(ranked[:HALL_MAX])
+            if keys[i] not in self._hall or found.cost < self._hall[keys[i]].cost:
+                self._hall[keys[i]] = found
+        self._hall = dict(sorted(self._hall.items(), key=lambda item: item[1].cost)[:HALL_MAX])
 
-    def _is_better(self, one: Solution, other: Solution) -> bool:
-        return one.fitness < other.fitness if self.minimize else one.fitness > other.fitness
+    def _solution(self, key: bytes, rated: _Rated) -> Solution:
+        genes = Genes(numpy.frombuffer(key, numpy.float32).copy(), self._names)
+        return Solution(genes, rated.fitness, rated.generation, rated.island, rated.organism)
+
+
+def _keys_of(genes: Genes) -> list[bytes]:
+    """The bytes of each chromosome."""
+    keys: list[bytes] = numpy.ascontiguousarray(genes).view(f"V{genes.itemsize * genes.shape[1]}").ravel().tolist()
+    return keys
+
+
+class _Rated(NamedTuple):
+    """A solution without its genes."""
+
+    cost: float  # less is better
+    fitness: float  # as the function returned it
+    generation: int
+    island: int
+    organism: int
 
 
 # ---- the end

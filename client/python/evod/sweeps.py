@@ -3,11 +3,15 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import os
+import pathlib
+import re
 from typing import Any
 
 import numpy
 
-from evod.errors import wrong_argument
+from evod import plotting
+from evod.errors import DamagedData, FileNotFound, wrong_argument
 from evod.paired_tests import hedges_g, holm, interval, sign_flip_p
 from evod.tables import html_table, pandas, read_csv
 
@@ -18,7 +22,7 @@ _WEIGHTED = ("_mean", "_selection", "_transmission", "_migration", "_change")
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Sweep:
-    """The results of a parameter sweep, returned by `evod.sweep`."""
+    """The results of a parameter sweep, returned by `evod.sweep` and `evod.open_sweep`."""
 
     cell_count: int  #: number of different sets of values
     replicates: int  #: number of runs of each cell
@@ -159,6 +163,15 @@ class Sweep:
         result.insert(6, "adjusted", holm(list(result.p)))
         return result
 
+    def plot(self, measure: str = "fitness_mean", ax: Any = None) -> Any:
+        """Plots a column of `totals` with matplotlib, and returns the axes.
+
+        One swept parameter: a curve over the generations for each value, the mean of the replicates with a band of one
+        standard error. Two: the mean of the replicates in their last generations, as a heat map, or as points if the
+        values are not a grid.
+        """
+        return plotting.plot_sweep(self.totals, self.parameters, self._checked(measure), ax)
+
     @property
     def _run_columns(self) -> list[str]:
         return ["cell", "replicate", "seed", *self.parameters]
@@ -180,4 +193,30 @@ class Sweep:
         fields = (("parameters", ", ".join(self.parameters)), ("cells", self.cell_count),
                   ("replicates", self.replicates),
                   ("seed", self.seed))  # fmt: skip
-        return html_table((), fields, "sweep")
+        return html_table((), fields, "sweep") + plotting.image_html(self.plot)
+
+
+def open_sweep(path: str | os.PathLike[str]) -> Sweep:
+    """Opens the results of `evod sweep`: its folder, or the runs.csv in it.
+
+    Raises
+    ------
+    FileNotFound
+        There is no such file. `evod sweep` writes it when all runs have finished.
+    DamagedData
+        The file is not the table of a sweep.
+    """
+    file = pathlib.Path(path)
+    file = file / "runs.csv" if file.is_dir() else file
+    try:
+        csv = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise FileNotFound(f"there is no file {file}") from None
+    seed = re.search(r"^# seed: (\d+)$", csv, re.MULTILINE)
+    heading = re.search(r"^cell,replicate,seed,(.*?),?generation,", csv, re.MULTILINE)
+    if seed is None or heading is None:
+        raise DamagedData(f"{file} is not the table of a sweep")
+    parameters = tuple(filter(None, heading[1].split(",")))
+    seeds: dict[str, str] = dict(re.findall(r"^\d+,(\d+),(\d+),", csv, re.MULTILINE))  # by replicate
+    cell_count = len(set(re.findall(r"^(\d+),\d+,\d+,", csv, re.MULTILINE)))
+    return Sweep(cell_count, len(seeds), int(seed[1]), tuple(map(int, seeds.values())), parameters, csv)

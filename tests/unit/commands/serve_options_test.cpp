@@ -48,6 +48,8 @@ TEST(ServeOptions, ValuesOutOfRangeAreRejected) {
                                                   {"--http-host", "lab"},
                                                   {"--web", "--http-host", "http://lab"},
                                                   {"--web", "--http-host", "lab:80"},
+                                                  {"--embed-in", "http://localhost:8888"},
+                                                  {"--web", "--embed-in", "localhost:8888"},
                                                   {"--durability", "some"},
                                                   {"--file-bytes-max", "1"},
                                                   {"--data", "a", "--keep-nothing"}}) {
@@ -87,6 +89,8 @@ TEST(ServeOptions, WebIsThePortOfThePage) {
         described({"--http-host", "lab.example", "--web", "--http-host", "::1", "--http-bind", "0.0.0.0"});
     EXPECT_EQ(named->bind_address, "0.0.0.0");
     EXPECT_THAT(named->host_names, testing::ElementsAre("lab.example", "::1"));
+    EXPECT_THAT(described({"--web", "--embed-in", "http://a", "--embed-in", "http://b:*"})->embedders,
+                testing::ElementsAre("http://a", "http://b:*"));
 }
 
 TEST(ServeOptions, TheFirstWorldIsTheExperiments) {

@@ -55,9 +55,29 @@ TEST(Origin, IsThatOfTheHost) {
 }
 
 TEST(ContentSecurityPolicy, AllowsSessionsOfTheHostOnly) {
-    EXPECT_THAT(content_security_policy("lab:1", false), HasSubstr("connect-src 'self' ws://lab:1 wss://lab:1; base"));
-    EXPECT_THAT(content_security_policy("lab:1", true), HasSubstr("connect-src 'self' wss://lab:1; base"));
-    EXPECT_THAT(content_security_policy("", true), HasSubstr("connect-src 'self'; base"));
+    EXPECT_THAT(content_security_policy("lab:1", false, {}),
+                HasSubstr("connect-src 'self' ws://lab:1 wss://lab:1; base"));
+    EXPECT_THAT(content_security_policy("lab:1", true, {}), HasSubstr("connect-src 'self' wss://lab:1; base"));
+    EXPECT_THAT(content_security_policy("", true, {}), HasSubstr("connect-src 'self'; base"));
+}
+
+TEST(ContentSecurityPolicy, FramesAreForNamedOriginsOnly) {
+    EXPECT_THAT(content_security_policy("lab:1", false, {}), HasSubstr("; frame-ancestors 'none'; require"));
+    EXPECT_THAT(content_security_policy("lab:1", false, {"http://localhost:8888", "https://hub.example"}),
+                HasSubstr("; frame-ancestors http://localhost:8888 https://hub.example; require"));
+}
+
+TEST(ContentSecurityPolicy, AnEmbedderIsAnOrigin) {
+    for (const char* origin : {"http://localhost:8888", "http://localhost:*", "https://hub.example.org",
+                               "http://127.0.0.1:8888", "http://my_host-1"}) {
+        EXPECT_EQ(embedder_problem(origin), "") << origin;
+    }
+    for (const char* origin :
+         {"", "localhost:8888", "http://", "http://:80", "http://a b", "http://lab/", "http://lab:70000",
+          "http://lab:8:*", "http://*", "*", "'self'", "http://lab;script-src", "http://lab,http://b", "file://lab",
+          "HTTP://lab", "http://[::1]:8888", "http://lab\r\nX: y", "http://user@lab"}) {
+        EXPECT_THAT(embedder_problem(origin), HasSubstr("such as http://localhost:8888")) << origin;
+    }
 }
 
 TEST(AcceptEncoding, GzipMayBeNamedOrImplied) {

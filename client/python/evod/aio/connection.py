@@ -88,7 +88,7 @@ async def local(
     program: str | os.PathLike[str] | None = None,
     timeout_s: float = 30.0,
 ) -> LocalLab:
-    """Starts a private server at a free port and connects to it.
+    """Starts a private server at a free port and connects to it. Its page is at another free port: `World.show`.
 
     The server stops when the lab is closed or garbage collected, and when this program ends, even if it is killed.
 

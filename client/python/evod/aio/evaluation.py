@@ -10,16 +10,14 @@ from typing import Any, AsyncIterator, Callable, Protocol, TypeVar
 import numpy
 import numpy.typing
 
-from evod import plans
 from evod.aio.link import Link, blocking_call, call_back
 from evod.errors import FailedPrecondition
 from evod.generations import Generation, History, Population
 from evod.objectives import Front
-from evod.plans import GenerationStream
+from evod.plans import GenerationStream, Plan
 from evod.progress import ProgressLine
 from evod.rating import EndRules, Rater
 from evod.results import WorldInfo
-from evod.v1 import world_pb2
 
 T = TypeVar("T")
 
@@ -30,9 +28,8 @@ class _Rated(Protocol):
     @property
     def name(self) -> str: ...
 
-    async def _set_fitness(
-        self, population: Population, fitness: numpy.typing.NDArray[Any], genes: numpy.typing.NDArray[Any] | None
-    ) -> bool: ...
+    def _fitness_plan(self, population: Population, fitness: numpy.typing.NDArray[Any],
+                      genes: numpy.typing.NDArray[Any] | None) -> Plan[bool]: ...
 
     async def pause(self) -> WorldInfo: ...
 
@@ -115,10 +112,10 @@ class Evaluation(History):
         """Rates organisms until another generation has ended, and adds it. Returns False at the end."""
         if self.reason:
             return False
-        step = await self._link.perform(self._stream.step())
-        while isinstance(step, world_pb2.AwaitedFitness):
-            await self._rate(step)
-            step = await self._link.perform(self._stream.step())
+        step = await self._link.perform(self._stream.rated_step(None))
+        while isinstance(step, Population):
+            fitness, genes = await blocking_call(self._rater.rate, step)
+            step = await self._link.perform(self._stream.rated_step(self._world._fitness_plan(step, fitness, genes)))
         if step is None:
             self.reason = self._stream.reason
             return False
@@ -132,13 +129,3 @@ class Evaluation(History):
         if self.reason:
             await self._world.pause()
         return True
-
-    async def _rate(self, awaited: world_pb2.AwaitedFitness) -> None:
-        for island in awaited.islands:
-            names = self._stream.info.gene_names
-            population = await self._link.perform(plans.population(self._world.name, island, names))
-            if population.generation != awaited.generation:
-                return  # another client has rated this generation
-            fitness, genes = await blocking_call(self._rater.rate, population)
-            if not await self._world._set_fitness(population, fitness, genes):
-                return

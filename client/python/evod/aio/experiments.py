@@ -185,8 +185,9 @@ async def sweep(
     grid: Mapping[str, object] | None = None,
     list: Sequence[Mapping[str, object]] | None = None,
     latin_hypercube: Mapping[str, object] | None = None,
-    replicates: int = 1,
+    replicates: int | None = None,
     seed: int | None = None,
+    seeds: Sequence[int] | None = None,
     generations: int | None = None,
     jobs: int | None = None,
     executor: concurrent.futures.Executor | None = None,
@@ -215,9 +216,11 @@ async def sweep(
     latin_hypercube
         ``{"samples": N, "parameters": {…}}``: N cells that cover the ranges of the parameters evenly.
     replicates
-        The number of runs per cell. Replicate r has the same seed in every cell.
+        The number of runs per cell, by default 1. Replicate r has the same seed in every cell.
     seed
         The seed of the whole sweep. By default the seed of the experiment, or 1.
+    seeds
+        The seed of each replicate. By default they are derived from `seed`.
     generations
         The number of generations of each run. By default a termination criterion of the experiment ends each run.
     jobs
@@ -272,11 +275,12 @@ async def sweep(
     if function is not None and (executor is not None or out is not None):
         allowed = "no value if a function is given: worker processes of this machine execute it"
         raise wrong_argument("out" if executor is None else "executor", allowed, out if executor is None else executor)
-    given = {"grid": grid, "list": list, "latin_hypercube": latin_hypercube, "seed": seed, "generations": generations}
+    given = {"grid": grid, "list": list, "latin_hypercube": latin_hypercube, "seed": seed, "generations": generations,
+             "seeds": seeds, "replicates": 1 if replicates is None and seeds is None else replicates}
     whole = with_parameters(experiment, parameters)
     design: dict[str, object] = {name: value for name, value in given.items() if value is not None}
     planned = os.path.abspath(whole) if isinstance(whole, str) else whole
-    design |= {"experiment": planned if function is None else stand_in(values_of(whole)), "replicates": replicates}
+    design |= {"experiment": planned if function is None else stand_in(values_of(whole))}
     with tempfile.TemporaryDirectory(prefix="evod-sweep-") as folder:
         path = write_json(os.path.join(folder, "sweep.json"), design)
         results = pathlib.Path(folder if out is None else out)

@@ -20,7 +20,9 @@ from evod.experiment import Experiment, world_values
 from evod.genes import Genes
 from evod.generations import Generation, Life, Population
 from evod.lab_plans import LabPlans
+from evod.notebook import PageFrame, in_notebook
 from evod.parameters import Parameters, PlannedChange, Registry
+from evod.progress import ProgressLine
 from evod.rating import EndRules, Rater, refuse_unknown, Repaired
 from evod.results import DamagedWorld, EntityIds, WorldInfo
 from evod.tables import html_table
@@ -371,7 +373,7 @@ class World(ParameterAttributes, WorldQueries):
     # ---- running --------------------------------------------------------------------------------------------------
 
     @opens_stream
-    async def run(self, generations: int | None = None) -> Run:
+    async def run(self, generations: int | None = None, *, progress: bool = False) -> Run:
         """Starts the world and returns a `Run`, which yields each generation when it ends.
 
         The world runs even if the result is not iterated. `Run.wait` waits for the end of the run, or for a pause.
@@ -380,6 +382,9 @@ class World(ParameterAttributes, WorldQueries):
         ----------
         generations
             The number of further generations to run, at least 1. By default the world runs until it is paused.
+        progress
+            Show the last generation in one line on the terminal or in the notebook, while the result is iterated or
+            waited for.
 
         Examples
         --------
@@ -390,7 +395,7 @@ class World(ParameterAttributes, WorldQueries):
         >>> len(best)
         3
         """
-        return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)))
+        return Run(self._link, await self._link.perform(self._plans.run(self.name, generations)), progress)
 
     @opens_stream
     async def evaluate(
@@ -448,7 +453,7 @@ class World(ParameterAttributes, WorldQueries):
         on_generation
             A function that is called with each `Generation` when it has ended.
         progress
-            Show the last generation in one line on the terminal.
+            Show the last generation in one line on the terminal or in the notebook.
         live
             Return before the first generation. Organisms are rated while the result is iterated; leaving the loop ends
             the call. By default the call waits for the end, and the result yields the generations afterwards.
@@ -486,12 +491,10 @@ class World(ParameterAttributes, WorldQueries):
         evaluation = Evaluation(self._link, stream, self, rater, rules, on_generation, progress)
         return evaluation if live else await evaluation.wait()
 
-    async def _set_fitness(
-        self, population: Population, fitness: numpy.typing.NDArray[Any], genes: numpy.typing.NDArray[Any] | None
-    ) -> bool:
+    def _fitness_plan(self, population: Population, fitness: numpy.typing.NDArray[Any],
+                      genes: numpy.typing.NDArray[Any] | None) -> plans.Plan[bool]:
         life = population.life
-        plan = self._plans.set_fitness(self.name, life.generation, life.island, fitness, genes)
-        return await self._link.perform(plan)
+        return self._plans.set_fitness(self.name, life.generation, life.island, fitness, genes)
 
     async def run_until_tick(self, tick: int) -> WorldInfo:
         """Starts the world, which pauses after this tick, counted from the beginning of the run. `wait` waits for the
@@ -611,6 +614,28 @@ class World(ParameterAttributes, WorldQueries):
             page = page_link.page_of(self._lab.welcome, self._link.server, self._link.tls)
             page_link.warn_of_other_host(self._lab.welcome, self._link.server)
         return page_link.link_of(page, info, generation, tick, island, organism, live)
+
+    async def show(self, *, width: int | str = "100%", height: int | str = 600) -> PageFrame:
+        """Shows the page with this world in a notebook; a replay is shown at its moment.
+
+        Outside of notebooks it prints the link of the page. The server allows its page in a notebook if `local` has
+        started it in the notebook, or with the option ``--embed-in ORIGIN`` of evod.
+
+        Parameters
+        ----------
+        width, height
+            The size of the frame, in px or as text with a unit of CSS.
+
+        Raises
+        ------
+        FailedPrecondition
+            The server has no page that this machine can reach.
+        """
+        info = await self._link.perform(plans.world_info(self.name))
+        frame = PageFrame(await self.link(live=not info.replay.replay_of), width, height)
+        if not in_notebook():
+            print(frame.link)
+        return frame
 
     @opens
     async def open_replay(self, generation: int | None = None, tick: int | None = None) -> Replay:

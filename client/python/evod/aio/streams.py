@@ -11,6 +11,7 @@ from evod import plans
 from evod.aio.link import Link
 from evod.conversion import result
 from evod.generations import Generation
+from evod.progress import ProgressLine
 from evod.results import WorldInfo
 from evod.snapshots import Snapshot
 from evod.tables import html_table
@@ -50,6 +51,10 @@ class Run(_Stream):
 
     _stream: plans.GenerationStream
 
+    def __init__(self, link: Link, stream: plans.GenerationStream, progress: bool) -> None:
+        super().__init__(link, stream)
+        self._line = ProgressLine(stream.goal) if progress else None
+
     def __repr__(self) -> str:
         info = self._stream.info
         end = f"to {info.run_until_generation - 1}" if info.HasField("run_until_generation") else "until it is paused"
@@ -77,7 +82,11 @@ class Run(_Stream):
     async def __anext__(self) -> Generation:
         generation = await self._link.perform(self._stream.next())
         if generation is None:
+            if self._line is not None:
+                self._line.end()
             raise StopAsyncIteration
+        if self._line is not None:
+            self._line.show(generation)
         return generation
 
     async def wait(self) -> Generation | None:
