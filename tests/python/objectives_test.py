@@ -95,7 +95,8 @@ class Objectives(unittest.TestCase):
         last = organisms[organisms["generation"] == 5]
         mask = evod.nondominated(last[["fitness", "objective2"]])
         numpy.testing.assert_allclose(numpy.sort(-last["fitness"][mask]), search.front().objectives[:, 0])
-        self.assertEqual(list(search.front().to_pandas().columns), ["objective1", "objective2", "free0", "free1", "free2"])
+        self.assertEqual(list(search.front().to_pandas().columns),
+                         ["objective1", "objective2", "free0", "free1", "free2"])
         self.assertEqual(search.front().plot().get_xlabel(), "objective 1")
         breeding = world.breeding(island=0, generation=4)
         self.assertEqual(len({contender.own_fitness for contender in breeding.contenders}) > 1, True)
@@ -114,8 +115,8 @@ class Objectives(unittest.TestCase):
 
 
 class Repair(unittest.TestCase):
-    SETTING = {"fitness": "external", "external_bodies": False, "free_genes": 3, "population_size": 12, "elite_count": 1,
-               "mutate_group": "free"}
+    SETTING = {"fitness": "external", "external_bodies": False, "free_genes": 3, "population_size": 12,
+               "elite_count": 1, "mutate_group": "free"}
 
     def setUp(self):
         self.data = tempfile.TemporaryDirectory()

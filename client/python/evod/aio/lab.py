@@ -429,10 +429,11 @@ class World(ParameterAttributes, WorldQueries):
         ----------
         function
             It is called with the genes, of shape (count, genes), and the `Life` of the organisms of one island, and
-            returns one number for each organism, -1e100 to 1e100. Larger is better. The arrays are read-only. A function
-            that repairs chromosomes returns an `evod.Repaired`. If the world's parameter ``objectives`` is above 1, the function returns so many numbers
-            for each organism: an array of shape (count, objectives). `Generation.front` contains the best organisms
-            then, and the first objective is the fitness in all other results and in the criteria below.
+            returns one number for each organism, -1e100 to 1e100. Larger is better. The arrays are read-only. A
+            function that repairs chromosomes returns an `evod.Repaired`. If the world's parameter ``objectives`` is
+            above 1, the function returns so many numbers for each organism: an array of shape (count, objectives).
+            `Generation.front` contains the best organisms then, and the first objective is the fitness in all other
+            results and in the criteria below.
         generations
             The number of further generations, at least 1. By default until the world is paused, or until another
             criterion.
