@@ -123,6 +123,14 @@ const std::vector<Scenario>& all() {
          480,
          {}},
 
+        {"nsga2", // survivors are the best, and parents are selected among them
+         R"({"island_count": 2, "population_size": 30, "generation_s": 2, "population_model": "nsga2",
+             "selection": "tournament", "tournament_size": 2, "elite_count": 1, "migration": "ring",
+             "migration_epoch": 2})",
+         base::Seed{59},
+         480,
+         {}},
+
         {"simulated_binary", // with polynomial creep, and genes that are reflected at their bounds
          R"({"island_count": 2, "population_size": 30, "generation_s": 2, "crossover": "simulated_binary",
              "creep": "polynomial", "out_of_bounds": "reflect", "scale_chance": 0.8, "scale_range": 1,
