@@ -88,8 +88,8 @@ class Warnings(Case):
         browser.open(self.page(served))
         browser.take_part()
         browser.panel("Parameters")
-        field = browser.wait("""[...document.querySelectorAll('[data-panel=parameters] .field[data-parameter=survivors]')]
-                                .find((one) => one.checkVisibility() && !one.disabled)""", "the field")
+        field = browser.wait("[...document.querySelectorAll(arguments[0])].find((one) => !one.disabled)", "the field",
+                             "[data-panel=parameters] .field[data-parameter=survivors]")
         browser.type_into(field, "1")
         browser.wait_for_text("No child is ever bred, because all organisms survive", ".parameters .warning")
         browser.press("Discard")
