@@ -1,9 +1,10 @@
 """Worlds without bodies, the best solution and warnings in a real Chromium."""
+import json
 import signal
 import sys
 import unittest
 
-from page_case import Case, c, plain, w
+from page_case import Case, c, w
 
 DRAWN = """(() => {
   const canvas = document.querySelector(".population-canvas");
@@ -43,7 +44,6 @@ class WithoutBodies(Case):
         browser.press("›", ".population-pages")
         browser.wait("document.querySelector('.population-pages').innerText !== arguments[0]", "later genes", first)
         browser.press("›", ".population-pages")
-        browser.press("›", ".population-pages")
         browser.wait_for_text("–106 of 106", ".population-pages")
 
     def test_a_large_population_is_a_sample(self):
@@ -57,13 +57,13 @@ class WithoutBodies(Case):
         rows = self.control.call(get_history=c.GetHistory()).history.generations
         best = max(rows, key=lambda row: row.fitness_best)
         browser.wait_for_text(f"organism {best.best_organism}, generation {best.generation}", ".best-solution")
-        browser.press("Genes", ".best-solution")
+        browser.click(browser.element(".best-solution summary"))
         browser.wait("document.querySelectorAll('.best-solution tbody tr').length === 6", "six genes")
         genes = [float(text) for text in
                  browser.value("[...document.querySelectorAll('.best-solution td')].map((cell) => cell.innerText)")]
-        table = self.evoctl("--json", "best", server=self.served)
+        table = self.evoctl(self.served, "--json", "best")
         self.assertEqual([f"{gene:.4g}" for gene in genes],
-                         [f"{gene:.4g}" for gene in plain.json.loads(table)["genes"]])
+                         [f"{gene:.4g}" for gene in json.loads(table)["genes"]])
         browser.press("Ancestors", ".best-solution")
         browser.wait_for_text("ancestor", "[data-panel=family]")
 
@@ -88,8 +88,8 @@ class Warnings(Case):
         browser.open(self.page(served))
         browser.take_part()
         browser.panel("Parameters")
-        field = browser.wait("""[...document.querySelectorAll('[data-panel=parameters] .field[data-parameter=survivors]')]
-                                .find((one) => one.checkVisibility() && !one.disabled)""", "the field")
+        field = browser.wait("[...document.querySelectorAll(arguments[0])].find((one) => !one.disabled)", "the field",
+                             "[data-panel=parameters] .field[data-parameter=survivors]")
         browser.type_into(field, "1")
         browser.wait_for_text("No child is ever bred, because all organisms survive", ".parameters .warning")
         browser.press("Discard")

@@ -45,7 +45,7 @@ test("a choice is read as a text and as an index", () => {
 
 test("a wrong file names the line, what it contains and what is allowed", () => {
   for (const [text, problem] of [
-    ["", /^line 1: got "", allowed: the heading island,organism and the names of the genes, in any order, each name once$/],
+    ["", /^line 1: got "", allowed: a heading with island, organism and the name of each gene once, in any order$/],
     ["island,organism\n0,0\n", /^line 1: /],
     [`${heading},\n`, /^line 1: /],
     [`${heading},turn,turn\n`, /^line 1: /],

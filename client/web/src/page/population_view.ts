@@ -11,7 +11,7 @@ import {population_texts as texts} from "../texts/population";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {on_theme_change} from "../widgets/theme";
-import {gene_axes, gene_value_text, type GeneAxis} from "../world/gene_axes";
+import {gene_axes, gene_value_text, type GeneAxis, value_in_effect} from "../world/gene_axes";
 import type {ViewedWorld} from "../world/world";
 import {observe_size} from "./canvas_size";
 
@@ -41,6 +41,7 @@ export class PopulationView {
   #size: Size = {width: 0, height: 0};
   #pixel_ratio = 1;
   #first_gene = 0;
+  #is_light = false; // the ground: the greatest fitness is dark then
   #columns: PopulationColumns|null = null; // in the drawing
   #set: ParameterSet|null = null;          // its bounds
   #drawn = "";                             // what else determines it
@@ -104,6 +105,8 @@ export class PopulationView {
     this.#canvas.width = Math.round(width * ratio);
     this.#canvas.height = Math.round(height * ratio);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const theme = theme_of(this.#canvas);
+    this.#is_light = is_light(context, theme.surface);
     const read = columns?.genes[0]?.length ?? 0, fitness = columns?.fitness ?? null, best = best_of(fitness);
     const count = axes_with_room(all.length, width);
     this.#first_gene = Math.max(Math.min(this.#first_gene, all.length - count), 0);
@@ -112,7 +115,7 @@ export class PopulationView {
     if (columns === null || read === 0 || columns.genes.length !== all.length) {
       return;
     }
-    const theme = theme_of(this.#canvas), space = width / count, is_turned = space < upright_pixels;
+    const space = width / count, is_turned = space < upright_pixels;
     const axes = all.slice(this.#first_gene, this.#first_gene + count).map((axis, i): Axis => {
       const values = columns.genes[this.#first_gene + i]!;
       return {...bounded(axis, values), values, x: (i + 0.5) * space};
@@ -140,7 +143,10 @@ export class PopulationView {
   #describe(
     columns: PopulationColumns|null, drawn: number, best: number|null, axis_count: number, gene_count: number): void {
     const read = columns?.genes[0]?.length ?? 0, fitness = columns?.fitness ?? null;
-    const best_text = best === null ? texts.unrated : texts.best(best, fitness![best]!);
+    const has_objectives = (value_in_effect(this.#set, "objectives")?.count ?? 1) > 1;
+    const best_text = best !== null ? texts.best(best, fitness![best]!) :
+      has_objectives                ? texts.objectives :
+                                      texts.unrated;
     set_text(this.#shown, columns === null ? texts.loading : texts.shown(drawn, read, columns.organism_count));
     set_text(this.#best, columns === null ? "" : best_text);
     set_attribute(this.#best, "data-known", best === null ? null : "");
@@ -148,7 +154,7 @@ export class PopulationView {
     if (fitness !== null) {
       set_text(this.#low, fitness_text(least_of(fitness)));
       set_text(this.#high, fitness_text(fitness[best!]!));
-      draw_bar(this.#bar, this.#world.look.palette);
+      this.#draw_bar();
     }
     this.#pages.hidden = axis_count >= gene_count;
     set_text(this.#range, texts.genes(this.#first_gene + 1, this.#first_gene + axis_count, gene_count));
@@ -176,11 +182,25 @@ export class PopulationView {
       fitness === null ? 0.5 : high > low ? (fitness[id]! - low) / (high - low) : 1;
     context.lineWidth = 1;
     context.globalAlpha = between(50 / sample.length, 0.06, 0.85);
-    for (const id of fitness === null ? sample : [...sample].sort((a, b) => fitness[a]! - fitness[b]!)) { // the best last
-      context.strokeStyle = css(ramp_at(this.#world.look.palette, share(id)));
+    const in_order = fitness === null ? sample : [...sample].sort((a, b) => fitness[a]! - fitness[b]!); // the best last
+    for (const id of in_order) {
+      context.strokeStyle = this.#colour_of(share(id));
       draw_line(context, axes, id, top, bottom);
     }
     context.globalAlpha = 1;
+  }
+
+  /** share: 0 for the least fitness, 1 for the greatest. */
+  #colour_of(share: number): string {
+    return css(ramp_at(this.#world.look.palette, this.#is_light ? 1 - share : share));
+  }
+
+  #draw_bar(): void {
+    const context = this.#bar.getContext("2d")!, {width} = this.#bar;
+    for (let x = 0; x < width; ++x) {
+      context.fillStyle = this.#colour_of((x + 0.5) / width);
+      context.fillRect(x, 0, 1, 1);
+    }
   }
 }
 
@@ -188,12 +208,10 @@ function least_of(values: Float64Array): number {
   return values.reduce((least, value) => Math.min(least, value), Infinity);
 }
 
-function draw_bar(bar: HTMLCanvasElement, palette: "violet"|"viridis"|"cividis"): void {
-  const context = bar.getContext("2d")!;
-  for (let x = 0; x < bar.width; ++x) {
-    context.fillStyle = css(ramp_at(palette, (x + 0.5) / bar.width));
-    context.fillRect(x, 0, 1, 1);
-  }
+function is_light(context: CanvasRenderingContext2D, ground: string): boolean {
+  context.fillStyle = ground; // reads back as "#rrggbb"
+  const channels = /^#(..)(..)(..)$/.exec(context.fillStyle)?.slice(1).map((channel) => parseInt(channel, 16)) ?? [0];
+  return channels.reduce((sum, channel) => sum + channel, 0) > 3 * 128;
 }
 
 /** Draws the genes of an organism; a single gene as a short line on its axis. */

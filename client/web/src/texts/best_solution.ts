@@ -14,5 +14,5 @@ export const best_solution_texts = {
   ancestors_help: "Shows the ancestors of this organism in the family tree.",
   loading: "Loading the genes …",
   missing: (generation: number) =>
-    `The population of generation ${with_separators(generation)} does not contain this organism.`,
+    `The run file does not contain this organism of generation ${with_separators(generation)}.`,
 };

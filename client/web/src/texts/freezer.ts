@@ -97,7 +97,7 @@ export const freezer_texts = {
   wrong_line: (line: number, got: string, allowed: string) =>
     `line ${with_separators(line)}: got "${got}", allowed: ${allowed}`,
   not_csv: (line: number) => `line ${with_separators(line)}: a cell in quotation marks does not end as it must`,
-  heading: "the heading island,organism and the names of the genes, in any order, each name once",
+  heading: "a heading with island, organism and the name of each gene once, in any order",
   row: (genes: number, allowed: number, got: number) =>
     `an island, an organism and ${counted(genes, "gene", "genes")}, so ${allowed} cells, not ${got}` +
     (got > allowed ? "; decimal commas need semicolons or tabs between the cells" : ""),

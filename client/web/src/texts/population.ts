@@ -12,6 +12,7 @@ export const population_texts = {
                         `the first ${with_separators(read)} of ${with_separators(all)} organisms.`),
   best: (organism: number, fitness: number) => `Best: organism ${organism}, fitness ${fitness_text(fitness)}`,
   unrated: "The fitness of this generation is not known yet.",
+  objectives: "There are several objectives, so no organism is the best in all.",
   genes: (first: number, last: number, count: number) =>
     `genes ${with_separators(first)}–${with_separators(last)} of ${with_separators(count)}`,
   before: "Earlier genes",

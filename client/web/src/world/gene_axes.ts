@@ -40,7 +40,8 @@ function axes_of({name = "", min = 0, max = 0, logarithmic = false, choices = []
 
 /** The texts of the genes that are choices, by name. */
 export function gene_choices(info: WorldInfo|null): ReadonlyMap<string, readonly string[]> {
-  return new Map((info?.free_genes?.genes ?? []).filter(({choices}) => choices).map(({name = "", choices}) => [name, choices!]));
+  const listed = info?.free_genes?.genes ?? [];
+  return new Map(listed.flatMap(({name = "", choices}) => choices ? [[name, choices]] : []));
 }
 
 /** "relu" for a choice, "0.01" for a number. */
