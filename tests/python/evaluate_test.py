@@ -186,10 +186,10 @@ class Evaluate(unittest.TestCase):
         best = world.best()
         self.assertEqual(best.genes.names, names)
         verify(self.data.name, "alone")
-        six = self.lab.create_world("six free", {**setting, "free_genes": 6}, seed=1)
+        six = self.lab.create_world("six_free", {**setting, "free_genes": 6}, seed=1)
         self.assertEqual(six.evaluate(lambda genes, life: genes["free5"], 2)[-1].genes.names[0], "free0")
         self.assertEqual(six.population().genes.names[5], "free5")
-        bodies = self.lab.create_world("body genes", {**setting, "free_genes": 0}, seed=1)
+        bodies = self.lab.create_world("body_genes", {**setting, "free_genes": 0}, seed=1)
         self.assertEqual(bodies.info().gene_names, evod.GENE_NAMES)
 
     def test_genes_of_a_list_keep_to_their_values(self):

@@ -125,7 +125,7 @@ class Run(Recorded):
         evod("run", self.ring, "--generations", 5, "--run-file", self.file)
         done = evod("run", self.ring, "--run-file", self.file, "--csv", self.csv)
         self.assertIn("continues at generation 5\n", done.stdout)
-        self.assertEqual(state(done), state(self.plain))
+        self.assertEqual(state(done.stdout), state(self.plain))
         self.expect_whole()
         self.assertIn("its generation_limit is 12, not 11",
                       evod("run", self.ring, "--generations", 11, "--run-file", self.file, status=1).stderr)
