@@ -1,5 +1,5 @@
-// Suggestions: names that are similar to a misspelled word, and what is wrong with a value. Standard library only, because every folder may include
-// this one.
+// Suggestions: names that are similar to a misspelled word, and what is wrong with a value. Standard library only,
+// because every folder may include this one.
 //
 // Threads      any; no state.
 #pragma once
