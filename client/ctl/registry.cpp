@@ -102,10 +102,7 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
     case v1::PARAMETER_KIND_REAL: {
         const auto real = number_from<double>(word);
         if (!real || !std::isfinite(*real)) {
-            std::string with_point{word};
-            std::ranges::replace(with_point, ',', '.');
-            const bool has_comma = with_point != word && number_from<double>(with_point);
-            return wrong(has_comma ? "; write a point in a decimal number: " + with_point : "");
+            return wrong(text::value_hint(word, true));
         }
         value.set_real(*real);
         return value;
@@ -113,7 +110,7 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
     case v1::PARAMETER_KIND_COUNT: {
         const auto count = count_from(word);
         if (!count) {
-            return wrong();
+            return wrong(text::value_hint(word, true));
         }
         value.set_count(*count);
         return value;
@@ -121,7 +118,7 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
     case v1::PARAMETER_KIND_FLAG: {
         const auto flag = flag_from(word);
         if (!flag) {
-            return wrong();
+            return wrong(text::value_hint(word, false));
         }
         value.set_flag(*flag);
         return value;

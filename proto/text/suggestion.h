@@ -1,10 +1,11 @@
-// Suggestions: names that are similar to a misspelled word. Standard library only, because every folder may include
-// this one.
+// Suggestions: names that are similar to a misspelled word, and what is wrong with a value. Standard library only,
+// because every folder may include this one.
 //
 // Threads      any; no state.
 #pragma once
 
 #include <algorithm>
+#include <charconv>
 #include <cstddef>
 #include <numeric>
 #include <string>
@@ -69,6 +70,24 @@ std::string did_you_mean(std::string_view word, const Names& names) {
         text += (i == 0 ? "; did you mean " : i + 1 == candidates.size() ? " or " : ", ") + candidates[i];
     }
     return text.empty() ? text : text + "?";
+}
+
+/// Returns what the author of a value that cannot be read probably has to change, after a semicolon; an empty text if
+/// the cause is unknown.
+///
+/// is_number  whether the value has to be a number.
+inline std::string value_hint(std::string_view value, bool is_number) {
+    std::string changed{value};
+    std::replace(changed.begin(), changed.end(), ',', '.');
+    double number = 0;
+    const char* const end = changed.data() + changed.size();
+    if (is_number && changed != value && std::from_chars(changed.data(), end, number).ptr == end) {
+        return "; write a decimal point: " + changed;
+    }
+    changed = value;
+    std::transform(changed.begin(), changed.end(), changed.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return !is_number && changed != value ? "; write it in lower case" : "";
 }
 
 } // namespace evod::text

@@ -269,34 +269,15 @@ base::Result<RequestedParameters> assign(const RequestedParameters& requested, s
     return RequestedParameters{*assigned};
 }
 
-namespace {
-
-/// Returns what the author of a value that cannot be read probably has to change, after a semicolon; an empty text if
-/// the cause is unknown.
-std::string hint_about(const ParameterDescription& description, std::string_view text) {
-    const bool is_number = std::holds_alternative<RealParameter>(description.kind) ||
-                           std::holds_alternative<CountParameter>(description.kind);
-    std::string changed{text};
-    std::ranges::replace(changed, ',', '.');
-    double value;
-    const char* const end = changed.data() + changed.size();
-    if (is_number && changed != text && std::from_chars(changed.data(), end, value).ptr == end) {
-        return "; write a decimal point: " + changed;
-    }
-    changed = text;
-    std::ranges::transform(changed, changed.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
-    return !is_number && changed != text ? "; write it in lower case" : "";
-}
-
-} // namespace
-
 base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text) {
     const char* end = text.data() + text.size();
     const auto refused = [&]() -> base::Result<ParameterValue> {
+        const bool is_number = std::holds_alternative<RealParameter>(description.kind) ||
+                               std::holds_alternative<CountParameter>(description.kind);
         return base::Refusal{
             .code = base::RefusalCode::InvalidArgument,
             .message = "cannot read the value of " + std::string{description.name},
-            .violations = {{std::string{description.name}, description.allowed() + hint_about(description, text),
+            .violations = {{std::string{description.name}, description.allowed() + text::value_hint(text, is_number),
                             quoted_unless_choice(description, text)}}};
     };
     return std::visit(Overloaded{[&](const RealParameter&) -> base::Result<ParameterValue> {

@@ -1,5 +1,6 @@
 """What people ask of programs for evolution, in small: each with two siblings. Each case works, or its refusal says
 what to write."""
+import os
 import pathlib
 import tempfile
 import unittest
@@ -119,11 +120,20 @@ class Numbers(Case):
         self.refused("got 30.5, allowed a whole number", self.world, population_size=30.5)
 
     def test_typing_errors_name_what_to_write(self):
-        for name, value, hint in (("mutation_chance", "0,1", "write a point in a decimal number: 0.1"),
+        for name, value, hint in (("mutation_chance", "0,1", "write a decimal point: 0.1"),
                                   ("mutation_chance", "1e-1", "without quotation marks"),
                                   ("respawn", "true", "write True without quotation marks"),
                                   ("mutation_chance", [0.1, 0.2], r"evod.sweep\(grid=…\)")):
             self.refused(hint, self.world, **{name: value})
+
+    def test_words_on_command_lines_get_the_same_hints(self):
+        for word, hint in (("mutation_chance=0,1", "write a decimal point: 0.1"), ("respawn=True", "in lower case"),
+                           ("mutation_step=1,5", "write a decimal point: 1.5")):
+            for command in ([os.environ["EVOCTL"], "--server", self.lab.address, "set", word],
+                            [PROGRAM, "run", "--generations", "1", "--set", word]):
+                done = waiting.run(command, capture_output=True, text=True)
+                self.assertNotEqual(done.returncode, 0)
+                self.assertIn(hint, done.stderr)
 
     def test_a_sweep_takes_seeds(self):
         small = {"population_size": 10, "generation_s": 1}

@@ -65,7 +65,7 @@ class Description:
         hint = ""
         if isinstance(value, str) and self.kind in ("real", "count"):
             if re.fullmatch(r"\s*[+-]?\d+,\d+\s*", value):
-                hint = f"; write a point in a decimal number: {value.strip().replace(',', '.')}"
+                hint = f"; write a decimal point: {value.strip().replace(',', '.')}"
             elif re.fullmatch(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", value):
                 hint = "; write it without quotation marks"
         elif isinstance(value, str) and self.kind == "flag" and value.lower() in ("true", "false"):

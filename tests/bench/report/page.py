@@ -360,6 +360,15 @@ class Page:
                  with_spread(figures["generations_per_s"])],
                 ["the same with a fitness function of evod", with_spread(figures["built_in_generations_per_s"])]]
 
+    def optimisers(self):
+        figures = self.results.get("optimisers")
+        if figures is None:
+            return table([], [])
+        numbers = ("evod", "deap", "adjusted_p", "evod_s", "deap_s", "time_ratio")
+        rows = [[row["function"], *(digits(row[name]) for name in numbers)] for row in figures["rows"]]
+        when = f"Measured on {figures['date']}; the load of the machine was {figures['load']:.1f}.\n\n"
+        return when + table(["function", "evod", "DEAP", "p", "evod, s", "DEAP, s", "time, evod to DEAP"], rows)
+
     def drawing(self):
         def own(row):
             return digits(row["own_ms"]) if "own_ms" in row else ""

@@ -227,6 +227,14 @@ def package(bench):
     return figures
 
 
+def optimisers(bench):
+    seeds = ["--seeds", 3] if bench.quick else []
+    load = os.getloadavg()[0]
+    rows = programs.run_json(python, bench.root / "tests/bench/optimisers.py", bench.program("evod"),
+                             bench.build / "python", "--json", *seeds)
+    return {"date": time.strftime("%F"), "load": load, "rows": rows}
+
+
 def clients(bench):
     return of_server(bench, "network_cost.py")
 
@@ -275,7 +283,8 @@ everything = {"machine": machine_roofs, "workload": workload, "islands": islands
               "instructions": instructions,
               "phases": phases, "genetic": genetic, "breeding": breeding, "runs": whole_program,
               "server": server, "clients": clients, "run_files": run_files, "stream": stream, "sweeps": sweeps,
-              "package": package, "drawing": drawing}
+              "package": package, "optimisers": optimisers,
+              "drawing": drawing}
 
 
 def columns():

@@ -27,5 +27,14 @@ TEST(Nearest, FindsTheIntendedName) {
     EXPECT_EQ(did_you_mean("survivor", names), "; did you mean survivors or mutate_survivors?");
 }
 
+TEST(ValueHint, NamesTheProbableMistake) {
+    EXPECT_EQ(value_hint("0,1", true), "; write a decimal point: 0.1");
+    EXPECT_EQ(value_hint("True", false), "; write it in lower case");
+    for (const char* other : {"", "x", "0,1,2", "1,x"}) {
+        EXPECT_EQ(value_hint(other, true), "") << other;
+    }
+    EXPECT_EQ(value_hint("ring", false), "");
+}
+
 } // namespace
 } // namespace evod::text
