@@ -97,7 +97,7 @@ class Sweep:
         >>> methods = {"selection": ["random", "tournament"]}
         >>> sweep = evod.sweep(grid=methods, replicates=3, seed=1, generations=20)
         >>> sweep.time_to("fitness_mean", 150).groupby("selection").generation.count().to_dict()
-        {'random': 0, 'tournament': 2}
+        {'random': 0, 'tournament': 3}
         """
         totals = self.totals
         column = totals[self._checked(measure)]

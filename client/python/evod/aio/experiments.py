@@ -259,7 +259,7 @@ async def sweep(
     >>> result
     <sweep of selection: 2 cells of 2 replicates, seed 1>
     >>> result.last.groupby("selection").fitness_mean.mean().round(1).to_dict()
-    {'random': 54.3, 'tournament': 167.7}
+    {'random': 73.8, 'tournament': 145.6}
     >>> import concurrent.futures
     >>> with concurrent.futures.ThreadPoolExecutor(2) as threads:
     ...     same = await evod.aio.sweep(grid=methods, replicates=2, seed=1, generations=20, executor=threads)
