@@ -79,6 +79,14 @@ class Genes(Case):
             numpy.testing.assert_array_equal(world.population().genes[:count], known)
 
 
+    def test_columns_of_a_population_are_those_of_the_world(self):
+        for shape in (2, 4), (1, 6), (3, 1), (2, 3):
+            worlds = len(self.lab.worlds())
+            self.refused(r"population\[0\].*allowed (the shape \(organisms, 2\)|a multiple of 2)",
+                         self.lab.create_world, "columns", FREE, population=[numpy.full(shape, 0.5)])
+            self.assertEqual(len(self.lab.worlds()), worlds)
+
+
 class Fitness(Case):
     def test_what_is_no_number_names_the_organism_and_a_penalty(self):
         for value in numpy.nan, numpy.inf, -numpy.inf:

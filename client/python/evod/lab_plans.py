@@ -241,6 +241,13 @@ class LabPlans:
             free_genes=gene_list(listed) if isinstance(listed, (list, tuple)) else None,
         )
         world = info.name
+        columns = len(info.gene_names)  # the server sees only how many numbers there are
+        for island, genes in enumerate(population or ()):
+            if numpy.ndim(genes) == 2 and numpy.shape(genes)[1] != columns:
+                yield from request("delete_world", world=world)
+                allowed = f"the shape (organisms, {columns}): a column for each of {', '.join(info.gene_names[:8])}"
+                raise wrong_argument(f"population[{island}]", allowed + (", …" if columns > 8 else ""),
+                                     f"the shape {numpy.shape(genes)}")
         if requested is not None:
             yield from request("set_speed", world=world, speed=requested)
         return world
