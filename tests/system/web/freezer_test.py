@@ -102,9 +102,9 @@ class Freezer(Case):
 
     def test_what_cannot_be_kept_or_placed_says_why(self):
         browser = self.browser
-        self.open_file("wrong.csv", HEADING + "0,0," + ROW + "0,2," + ROW)
-        browser.wait_for_text('wrong.csv: line 3: got "0,2,103.2,97.5,100,100,99.25,101", allowed: organism 1 of '
-                              "island 0, or organism 0 of the next island.", PANEL)
+        self.open_file("wrong.csv", HEADING + "0,0," + ROW + "0,x," + ROW)
+        browser.wait_for_text('wrong.csv: line 3: got "0,x,103.2,97.5,100,100,99.25,101", allowed: a whole number '
+                              "(column organism).", PANEL)
         self.open_file("other.csv", HEADING.replace("\n", ",free_0\n") + "0,0," + ROW.replace("\n", ",1\n"))
         self.entry("other")
         browser.click("Place by clicks")

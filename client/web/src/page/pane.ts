@@ -2,20 +2,20 @@
 //
 // The pane sends "pane", "close_pane", "resize", "camera", "islands", "pointer" and "pick" to the worker, which draws.
 // ViewedWorld sends "watch", "look", "select" and "population".
+import type {PopulationView} from "../panels/population_view";
 import type {Drawing, FromWorker, Tool} from "../core/messages";
 import type {Point, Size} from "../render/camera";
 import {pane_texts} from "../texts/pane";
 import {set_attribute} from "../widgets/controls";
+import {observe_size} from "../widgets/canvas_size";
 import {h, set_text} from "../widgets/dom";
 import type {Notify} from "../widgets/notices";
 import type {ViewedWorld} from "../world/world";
-import {observe_size} from "./canvas_size";
 import {Gestures, type GestureTarget} from "./gestures";
 import {IslandLegend} from "./island_legend";
 import {IslandTiles} from "./island_tiles";
 import {PaneTool} from "./pane_tool";
 import {PaneView} from "./pane_view";
-import {PopulationView} from "./population_view";
 import {Picker, type Picked} from "./picker";
 
 export interface PaneOptions {
@@ -45,7 +45,7 @@ export class Pane {
   readonly #canvas =
     h("canvas", {class: "pane-canvas", tabindex: 0, role: "application", "aria-roledescription": pane_texts.kind});
   readonly #legend = new IslandLegend();
-  readonly #population: PopulationView;
+  #population: Promise<PopulationView>|null = null; // null before an island without bodies is shown
   readonly #hint = h("div", {class: "pane-hint", "aria-hidden": "true", hidden: true});
   readonly #note = h("p", {class: "pane-note", role: "status", hidden: true});
   readonly #options: PaneOptions;
@@ -63,11 +63,9 @@ export class Pane {
     this.#world = options.world;
     this.view = new PaneView(this.#world, (view) => options.on_view?.(view, "moved"));
     this.tool = new PaneTool(this.#world, () => this.#tool_changed());
-    this.#population = new PopulationView(this.#world);
     this.tiles = new IslandTiles(this.#world, (had_focus) => this.#tiles_changed(had_focus));
     this.element =
       h("div", {class: "pane"}, this.#canvas, this.#legend.element, this.#hint, this.#note, this.tiles.element,
-        this.#population.element,
         h("div", {class: "pane-focus"}));
     this.#picker = new Picker(this.#world.feed.pane, (message) => this.#world.server.post(message));
     this.#gestures = new Gestures(this.#canvas, this.#target());
@@ -91,7 +89,7 @@ export class Pane {
   close(): void {
     this.#gestures.close();
     this.#ends.forEach((end) => end());
-    this.#population.close();
+    void this.#population?.then((population) => population.close());
     this.#world.server.post({kind: "close_pane", pane: this.#world.feed.pane});
     this.element.remove();
   }
@@ -120,10 +118,19 @@ export class Pane {
     set_attribute(
       this.#canvas, "aria-label", shown === "" ? pane_texts.no_world : pane_texts.island(island, shown, alive));
     this.#canvas.hidden = !this.#world.has_bodies;
-    this.#population.refresh();
+    if (!this.#world.has_bodies) {
+      this.#population ??= this.#load_population();
+    }
+    void this.#population?.then((population) => population.refresh());
     this.#legend.refresh(this.#world, this.tiles.is_on);
     this.tiles.refresh(this.view.size, this.view.island);
     this.#refresh_hint(drawing);
+  }
+
+  async #load_population(): Promise<PopulationView> {
+    const {PopulationView: Loaded} = await import("../panels/loaded_later"), population = new Loaded(this.#world);
+    this.element.append(population.element);
+    return population;
   }
 
   #take_size_of_island(width: number, height: number): void {

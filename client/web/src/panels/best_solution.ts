@@ -1,14 +1,11 @@
 // BestSolution: the best organism of the run: its fitness, where it lived, its genes by name, and a way to its
 // ancestors. The genes are read from the run while they are shown.
-import {csv_records, CsvError} from "../core/csv";
 import {best_solution_texts as texts} from "../texts/best_solution";
-import {capitalised, shown_number} from "../texts/numbers";
+import {capitalised} from "../texts/numbers";
 import {h, set_text} from "../widgets/dom";
 import {BestOrganism} from "../world/best_organism";
-import {gene_axes} from "../world/gene_axes";
 import type {EndedGeneration} from "../world/history";
 import type {PanelContext} from "../world/panel_context";
-import {read_export} from "../world/run_export";
 import type {ViewedWorld} from "../world/world";
 
 const wait_ms = 1000; // after a reading, before the genes of a better organism are read
@@ -74,9 +71,11 @@ export class BestSolution {
     }
     let problem = "";
     try {
-      const genes = shown_genes(world, best) ?? await stored_genes(world, best);
+      const {genes_of_best} = await import("./loaded_later"), genes = await genes_of_best(world, best);
       problem = genes === null ? texts.missing(best.generation) : "";
-      this.#rows.replaceChildren(...(genes === null ? [] : gene_rows(world, genes)));
+      this.#rows.replaceChildren(
+        ...(genes ?? []).map(([name, value]) => h(
+                               "tr", {}, h("th", {scope: "row"}, name), h("td", {class: "number"}, value))));
     } catch (error) {
       problem = `${capitalised((error as Error).message)}.`;
       this.#rows.replaceChildren();
@@ -87,44 +86,4 @@ export class BestSolution {
     set_text(this.#note, problem);
     this.#table.hidden = problem !== "";
   }
-}
-
-function gene_rows(world: ViewedWorld, genes: ReadonlyMap<string, number>): HTMLElement[] {
-  return gene_axes(world.info, world.parameters.set).filter(({name}) => genes.has(name)).map(({name, choices}) => {
-    const value = genes.get(name)!;
-    return h(
-      "tr", {}, h("th", {scope: "row"}, name),
-      h("td", {class: "number"}, choices[Math.round(value)] ?? shown_number(value)));
-  });
-}
-
-/** The genes by name if the shown population contains the organism. */
-function shown_genes(world: ViewedWorld, {generation, island, best_organism = 0}: EndedGeneration):
-  ReadonlyMap<string, number>|null {
-  const {columns} = world.population, count = columns?.genes[0]?.length ?? 0;
-  return columns?.generation === generation && columns.island === island && best_organism < count ?
-    new Map(columns.gene_names.map((name, gene) => [name, columns.genes[gene]![best_organism]!])) :
-    null;
-}
-
-/** The genes by name from the run file; null if it does not contain the organism. Rejects with a refusal. */
-async function stored_genes(world: ViewedWorld, {generation, island, best_organism = 0}: EndedGeneration):
-  Promise<ReadonlyMap<string, number>|null> {
-  let heading: string[]|null = null, found: ReadonlyMap<string, number>|null = null;
-  const take = (lines: string[]): void => {
-    for (const record of csv_records(lines.join("\n"))) {
-      if (record instanceof CsvError) {
-        return;
-      }
-      if (heading === null) {
-        heading = record.cells;
-      } else if (Number(record.cells[0]) === island && Number(record.cells[1]) === best_organism) {
-        found = new Map(heading.map((name, i) => [name, Number(record.cells[i])]));
-      }
-    }
-  };
-  await read_export(
-    world.server, {world: world.name, table: "RUN_TABLE_POPULATION", format: "TEXT_FORMAT_CSV", generation}, take,
-    () => found !== null);
-  return found;
 }

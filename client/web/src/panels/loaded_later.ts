@@ -1,6 +1,7 @@
 // The panels that need most code, the dialogs, and evolution. They are a file of their own, panels.js, which the page
 // loads when one of them is first shown.
 export {Evolution} from "./evolution";
+export {genes_of_best} from "./best_genes";
 export {FamilyPanel} from "./family";
 export {FreezerPanel} from "./freezer";
 export {GlassBoxPanel} from "./glass_box";
@@ -9,5 +10,6 @@ export {new_world_dialog} from "./new_world";
 export {OrganismPanel} from "./organism";
 export {PhysicsPanel} from "./physics";
 export {PlotsPanel} from "./plots";
+export {PopulationView} from "./population_view";
 export {SecondWorld} from "./second_world";
 export {ViewPanel} from "./view";

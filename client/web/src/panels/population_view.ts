@@ -8,12 +8,12 @@ import type {PopulationColumns} from "../core/messages";
 import type {ParameterSet} from "../core/protocol";
 import {fitness_text} from "../texts/numbers";
 import {population_texts as texts} from "../texts/population";
+import {observe_size} from "../widgets/canvas_size";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {on_theme_change} from "../widgets/theme";
 import {gene_axes, gene_value_text, type GeneAxis, value_in_effect} from "../world/gene_axes";
 import type {ViewedWorld} from "../world/world";
-import {observe_size} from "./canvas_size";
 
 const organisms_read = 10_000; // of a larger population only the first ones are read
 const upright_pixels = 72; // between axes with less room, labels are turned
