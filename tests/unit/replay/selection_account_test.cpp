@@ -1,4 +1,5 @@
 // Selection accounts in run files: recovered, forked and replayed worlds have the accounts of the original.
+#include "server/replay/columns.h"
 #include "server/replay/mismatch.h"
 #include "server/replay/recovery.h"
 #include "server/replay/rerun.h"
@@ -167,7 +168,8 @@ TEST_F(SelectionAccountTest, AChangedAccountIsReportedButItsLastDigits) {
     (*begun->born[1].account)[2].transmission += 1e-12;
     EXPECT_FALSE(compare(begun->born, simulated)) << "the last digits, as an earlier build may have stored them";
     (*begun->born[1].account)[2].transmission += 1e-6;
-    const auto found = compare(begun->born, simulated);
+    const std::vector<std::string> names = gene_names_of((*file)->identity().parameters);
+    const auto found = compare(begun->born, simulated, names);
     ASSERT_TRUE(found);
     EXPECT_EQ(found->part, "the selection account: body_size_transmission on island 1");
     begun->born[1].account.reset();
@@ -176,7 +178,7 @@ TEST_F(SelectionAccountTest, AChangedAccountIsReportedButItsLastDigits) {
     const auto ended = *(*file)->generations().statistics_of(5);
     auto other = ended;
     (*other[0].account)[0].change *= 1 + 1e-6;
-    const auto in_statistics = compare(other, ended);
+    const auto in_statistics = compare(other, ended, names);
     ASSERT_TRUE(in_statistics);
     EXPECT_EQ(in_statistics->part, "the statistics: normal_speed_change on island 0");
     other[0].account.reset();

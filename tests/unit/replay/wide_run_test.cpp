@@ -214,7 +214,7 @@ TEST_P(WideRunTest, MigrantsBringTheirWholeChromosomes) {
     const auto run = begin();
     run->command(set_parameter("crossover", std::string{"none"}));
     run->command(set_parameter("mutation_chance", 0.0));
-    run->command(set_parameter("elite_count", 12u));
+    run->command(set_parameter("elite_count", 11u)); // migrants replace no elite
     run->advance(239);
     const evolution::GeneMatrix from = run->world().islands()[0].born().genes,
                                 to = run->world().islands()[1].born().genes;
