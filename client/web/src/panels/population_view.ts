@@ -12,7 +12,8 @@ import {observe_size} from "../widgets/canvas_size";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {on_theme_change} from "../widgets/theme";
-import {gene_axes, gene_value_text, type GeneAxis, value_in_effect} from "../world/gene_axes";
+import {gene_axes, gene_value_text, type GeneAxis} from "../world/gene_axes";
+import {value_in_effect} from "../world/parameter_values";
 import type {ViewedWorld} from "../world/world";
 
 const organisms_read = 10_000; // of a larger population only the first ones are read

@@ -1,6 +1,8 @@
 // gene_axes: the bounds and the possible values of each gene, from the list of free genes and from the parameters.
-import type {FreeGene, ParameterSet, ParameterValue, WorldInfo} from "../core/protocol";
+import type {FreeGene, ParameterSet, WorldInfo} from "../core/protocol";
 import {gene_text} from "../texts/breeding";
+
+import {value_in_effect} from "./parameter_values";
 
 export interface GeneAxis {
   name: string;
@@ -8,11 +10,6 @@ export interface GeneAxis {
   max: number|null;
   logarithmic: boolean;
   choices: readonly string[]; // of a gene that contains the index of one of them; otherwise empty
-}
-
-/** The value of a parameter that is in effect; undefined if the set does not contain it. */
-export function value_in_effect(set: ParameterSet|null, name: string): ParameterValue|undefined {
-  return set?.parameters?.find((parameter) => parameter.name === name)?.value;
 }
 
 /** Returns an axis for each gene of a chromosome, in order. */

@@ -1,5 +1,5 @@
 // parameter_values: values of parameters as texts and numbers. Pure functions.
-import type {ParameterDescription, ParameterValue} from "../core/protocol";
+import type {ParameterDescription, ParameterSet, ParameterValue} from "../core/protocol";
 import {rounded, with_separators} from "../texts/numbers";
 import {parameter_words} from "../texts/parameter_words";
 
@@ -39,4 +39,9 @@ export function typed_number(about: ParameterDescription, text: string): number|
   }
   const number = /^[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?$/i.test(clean) ? Number(clean.replace(",", ".")) : NaN;
   return Number.isFinite(number) ? number : null;
+}
+
+/** The value of a parameter that is in effect; undefined if the set does not contain it. */
+export function value_in_effect(set: ParameterSet|null, name: string): ParameterValue|undefined {
+  return set?.parameters?.find((parameter) => parameter.name === name)?.value;
 }
