@@ -328,7 +328,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/physics", "motion_kernels"): "unit/physics/step_test and tests/determinism",
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker"):
         "unit/recording/storage_thread_test and recorder_test",
-    ("server/replay", "columns table"): "unit/replay/run_tables_test",
+    ("server/replay", "table"): "unit/replay/run_tables_test",
     ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents "
                         "run_database "
                         "schema table"): "unit/run_file/run_file_test, damage_test and checkpoint_test: parts of one "
