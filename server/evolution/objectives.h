@@ -23,9 +23,9 @@ struct Objectives {
     std::span<const double> of(std::uint32_t organism) const { return numbers.subspan(organism * count, count); }
 };
 
-/// Returns the fronts of a population, the best first: the organisms of a front are dominated by no organism of the same
-/// or a later front, and each is dominated by one of the front before. An organism dominates another if it is worse in
-/// no objective and better in at least one. Within a front, organisms with a larger first objective come first.
+/// Returns the fronts of a population, the best first: no organism of a front is dominated by one of the same or a
+/// later front, and each is dominated by one of the front before. An organism dominates another if it is worse in no
+/// objective and better in at least one. Within a front, organisms with a larger first objective come first.
 std::vector<std::vector<std::uint32_t>> fronts(const Objectives& objectives);
 
 /// Returns the crowding distance of each organism of a front: the sum over all objectives of the distance between its

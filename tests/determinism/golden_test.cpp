@@ -30,6 +30,7 @@ const std::map<std::string, std::string> golden_hashes = {
     {"shuffled_fitness", "1ea6208418009bccf45b728ecac2e803"},
     {"weighted_fitness", "69692ebaefda2e75ab517769f0388fad"},
     {"blend", "e3054cfc0155bd87993c0afef5d4c868"},
+    {"nsga2", "7de65ff053a76d37eff16da0e0f1c010"},
     {"simulated_binary", "289d5ed70f135cd333d09b1568adb65b"},
     {"scale_mutation", "33c1ab1d2cc139b7d9def6a91647d621"},
     {"crowded_migration", "786103d0bfe4f8d3042345471872260d"},
