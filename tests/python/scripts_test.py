@@ -40,7 +40,7 @@ class Scripts(unittest.TestCase):
 
     def test_two_selection_methods_are_plotted(self):
         _, variables = self.run_script(0)
-        self.assertEqual(variables["fitness"].shape, (3, 4))
+        self.assertEqual(variables["sweep"].last.generation.tolist(), [3] * 4)
         self.assertGreater(variables["files"]["selection.png"], 5000)
 
     def test_distances_to_neighbours_are_printed(self):
