@@ -14,6 +14,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -74,6 +75,9 @@ Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& opt
     if (options.generation && options.what != "population") {
         return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
     }
+    if (options.every != 1 && options.what != "generations" && options.what != "organisms") {
+        return wrong_option("--every", "only with --what generations or organisms", std::to_string(options.every));
+    }
     // A bundle must contain CSV, because its REPEAT.md compares generations.csv with the output of `evod run --csv`.
     if (!options.bundle.empty() && options.format != "csv") {
         return wrong_option("--format", "only csv with --bundle", options.format);
@@ -125,7 +129,7 @@ Result<void> export_to(const ExportOptions& options) {
         return sound;
     }
     const auto executor = runtime::make_executor(options.threads);
-    const replay::RunSource run{**file, *executor};
+    const replay::RunSource run{.file = **file, .executor = *executor, .stop = {}, .every = options.every};
     using replay::RunTable;
     if (!*wanted || (*wanted)->table == RunTable::Organisms || (*wanted)->table == RunTable::Lineage) {
         report_omitted_generations(**file);
@@ -184,6 +188,11 @@ void add_export_command(command_line::Command& app) {
         .add_option("--generation", &options.generation,
                     "Only with --what population: generation to export; default: the last that has begun")
         .check(generation_number);
+    command
+        .add_option("--every", &options.every,
+                    "Only with --what generations or organisms: export only generations that this number divides, and "
+                    "the last one")
+        .check(command_line::WholeNumber{.min = 1, .max = std::numeric_limits<std::uint32_t>::max()});
     command.add_option("--format", &options.format, "Format of the table: csv, or jsonl with one JSON object per line")
         .choices({"csv", "jsonl"})
         .show_default();

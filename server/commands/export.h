@@ -20,6 +20,7 @@ struct ExportOptions {
     std::string format = "csv";              // "csv" or "jsonl"
     std::string output;                      // path of the output; empty: stdout
     std::size_t threads = 1;
+    std::uint32_t every = 1; // of generations and organisms: only every n-th generation, and the last one
 };
 
 /// Returns the exit status: 0, or 1 after it has printed an error to stderr. Rows written before an error are kept.

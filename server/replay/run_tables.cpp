@@ -17,7 +17,7 @@ using base::Refusal;
 using base::Result;
 using run_file::RunFile;
 
-/// Calls `of_generation` for each generation that has begun, in order, as long as rows can be written.
+/// Calls `of_generation` for each generation that has begun and is wanted, in order, as long as rows can be written.
 template <class OfGeneration>
 Result<void> for_each_generation(const RunSource& run, const std::ostream& out, OfGeneration&& of_generation) {
     run_file::RunFile& file = run.file;
@@ -35,6 +35,9 @@ Result<void> for_each_generation(const RunSource& run, const std::ostream& out, 
                            .message = file.path() + " is damaged: it contains generation " + std::to_string(last) +
                                       ", but not generation " + std::to_string(generation),
                            .violations = {}};
+        }
+        if (generation % run.every != 0 && generation != last) {
+            continue;
         }
         if (Result<void> done = of_generation(generation); !done) {
             return done;

@@ -45,6 +45,8 @@ struct RunSource {
     run_file::RunFile& file;
     base::Executor& executor;
     base::StopCheck stop = {};
+    // Of generations and organisms: only generations that this number divides, and the last one.
+    std::uint32_t every = 1;
 };
 
 /// Writes a table. Refused if the file is damaged, or if it does not contain the generation or the organism. Also

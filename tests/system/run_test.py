@@ -121,6 +121,16 @@ class Run(Recorded):
         self.assertEqual(self.csv.read_bytes(), self.plain_csv.read_bytes())
         self.assertEqual(self.plain_file.read_bytes(), before)
 
+    def test_an_export_may_leave_out_generations(self):
+        for table in "generations", "organisms":
+            lines = evod("export", self.plain_file, "--what", table, "--every", 5).stdout.splitlines()
+            whole = evod("export", self.plain_file, "--what", table).stdout.splitlines()
+            kept = [line for line in whole[1:] if int(line.split(",")[0]) in (5, 10, 12)]  # 12 is the last one
+            self.assertEqual(lines, [whole[0], *kept])
+        for words in ("--what", "events"), ("--bundle", self.ring.with_name("bundle")):
+            refused = evod("export", self.plain_file, *words, "--every", 5, status=1).stderr
+            self.assertIn("--every: got 5, allowed only with --what generations or organisms", refused)
+
     def test_more_generations_continue_a_finished_run(self):
         evod("run", self.ring, "--generations", 5, "--run-file", self.file)
         done = evod("run", self.ring, "--run-file", self.file, "--csv", self.csv)
