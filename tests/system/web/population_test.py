@@ -4,7 +4,7 @@ import signal
 import sys
 import unittest
 
-from page_case import Case, c, w
+from page_case import Browser, Case, c, w
 
 DRAWN = """(() => {
   const canvas = document.querySelector(".population-canvas");
@@ -35,6 +35,15 @@ class WithoutBodies(Case):
         page = browser.text()
         for absent in ("food", "poison", "alive", "health"):
             self.assertNotIn(absent, page)
+
+    def test_the_introduction_speaks_of_genes(self):
+        self.show()
+        newcomer = Browser(introduces=True)
+        self.addCleanup(newcomer.close)
+        newcomer.open(self.page(self.served), wait=False)
+        newcomer.wait_for_text("Each line is an organism", ".introduction")
+        for word in "Food", "poison", "health":
+            self.assertNotIn(word, newcomer.text())
 
     def test_other_genes_are_on_further_pages(self):
         browser = self.browser

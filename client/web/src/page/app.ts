@@ -263,6 +263,7 @@ export class App implements KeyTarget {
   #refresh_column(): void {
     if (this.column as Column | undefined) { // the first pane is there before the column
       this.column.refresh();
+      this.introduction.refresh(this.world().has_bodies);
       this.evolution.refresh();
       this.#banners.set(banners_of(this.server, this.#tokens, this.#link, this.evolution, () => this.refresh()));
       this.#notices.refresh();

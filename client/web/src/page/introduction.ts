@@ -2,7 +2,9 @@
 // it was shown.
 //
 // The card is above the world, or below it in a narrow window, and covers nothing. It takes neither the focus nor keys.
-import {introduction_steps as steps, introduction_texts as texts} from "../texts/introduction";
+import {
+  introduction_steps, introduction_steps_without_bodies, introduction_texts as texts
+} from "../texts/introduction";
 import {h, set_text} from "../widgets/dom";
 import {of_browser} from "../world/storage";
 
@@ -11,6 +13,7 @@ const key = "introduction";
 export class Introduction {
   readonly element: HTMLElement;
   #step = 0;
+  #steps = introduction_steps;
   readonly #title = h("h2", {});
   readonly #text = h("p", {});
   readonly #number = h("span", {class: "hint grow"});
@@ -45,6 +48,15 @@ export class Introduction {
     this.element.hidden = of_browser.get(key) !== "";
   }
 
+  /** has_bodies: of the world that the page shows. */
+  refresh(has_bodies: boolean): void {
+    const steps = has_bodies ? introduction_steps : introduction_steps_without_bodies;
+    if (steps !== this.#steps) {
+      this.#steps = steps;
+      this.#show(this.#step);
+    }
+  }
+
   /** Shows the first step again. */
   begin(): void {
     this.#show(0);
@@ -53,7 +65,7 @@ export class Introduction {
   }
 
   #go_on(): void {
-    if (this.#step === steps.length - 1) {
+    if (this.#step === this.#steps.length - 1) {
       this.#end();
     } else {
       this.#show(this.#step + 1);
@@ -61,7 +73,7 @@ export class Introduction {
   }
 
   #show(step: number): void {
-    const {title, text} = steps[step]!, is_last = step === steps.length - 1;
+    const steps = this.#steps, {title, text} = steps[step]!, is_last = step === steps.length - 1;
     this.#step = step;
     set_text(this.#title, title);
     set_text(this.#text, text);
