@@ -96,7 +96,7 @@ TEST(Controls, RandomSelectionBreedsTheSameForAnyFitness) {
     // In every population model, shuffling the fitness does not change the children.
     base::InlineExecutor executor;
     for (const auto model : {evolution::PopulationModel::Hybrid, evolution::PopulationModel::Generational,
-                             evolution::PopulationModel::SteadyState}) {
+                             evolution::PopulationModel::SteadyState, evolution::PopulationModel::Nsga2}) {
         Parameters parameters;
         parameters.fitness = parameters::FitnessFunction::GeneSum;
         parameters.population_model = model;
