@@ -150,11 +150,15 @@ class Browser:
 
     def button(self, label, within="body"):
         """The button with this text or name that can be seen."""
-        found = self.value(
-            """[...document.querySelectorAll(`${arguments[1]} button`)].find((e) => e.checkVisibility() &&
-            (e.textContent === arguments[0] || e.getAttribute("aria-label") === arguments[0]))""", label, within)
+        found = self.found_button(label, within)
         assert found is not None, f"no button {label!r} in {self.text(within)!r}"
         return found
+
+    def found_button(self, label, within="body"):
+        """As button(). None: there is none now."""
+        return self.value(
+            """[...document.querySelectorAll(`${arguments[1]} button`)].find((e) => e.checkVisibility() &&
+            (e.textContent === arguments[0] || e.getAttribute("aria-label") === arguments[0]))""", label, within)
 
     def click(self, target):
         """Clicks on an element, or on the button with this text."""
@@ -164,15 +168,18 @@ class Browser:
         element.click()
 
     def press(self, label, within="body"):
-        """Clicks on the button with this text as soon as it can act."""
+        """Clicks on the button with this text as soon as it is there and can act."""
         def clicked():
             with contextlib.suppress(StaleElementReferenceException):  # the page has made another one
-                button = self.button(label, within)
-                if button.is_enabled() and button.get_attribute("aria-disabled") != "true":
+                button = self.found_button(label, within)
+                if button is not None and button.is_enabled() and button.get_attribute("aria-disabled") != "true":
                     self.click(button)
                     return True
             return False
-        waiting.until(clicked, f"the button {label!r} enabled", pause_s=0.05)
+        try:
+            waiting.until(clicked, f"the button {label!r} enabled", pause_s=0.05)
+        except AssertionError as late:
+            raise AssertionError(f"{late}; the page shows: {self.text(within)!r}") from None
 
     def panels(self):
         """The titles of all panels."""

@@ -57,6 +57,7 @@ export class IslandView {
   #is_dirty = true;
   #drawn_blend = 1;
   #drawn_camera: Camera|null = null;
+  #drawn_place: Place|null = null;
 
   /** painter: null while the graphics context is lost. */
   constructor(settings: ViewSettings, public painter: Painter|null) {
@@ -108,6 +109,7 @@ export class IslandView {
     const blend = (this.#drawn_blend = this.#blend_at(now_ms));
     this.#follow(blend);
     const camera = (this.#drawn_camera = this.camera());
+    this.#drawn_place = this.settings.place;
     if (camera === null) {
       painter.draw(this.#scene({x_px: 0, y_px: 0, zoom: 1}, blend, painter));
       return;
@@ -125,6 +127,11 @@ export class IslandView {
     return size === null               ? null :
       camera === null || place.is_tile ? fitted(place, size, place.frame) :
                                          clamped(camera, place, size);
+  }
+
+  /** Whether a frame has shown the island at its present place. */
+  get is_drawn(): boolean {
+    return this.#drawn_camera !== null && this.#drawn_place === this.settings.place;
   }
 
   /** What is drawn at a point; see picked_at(). */

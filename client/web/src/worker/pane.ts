@@ -23,6 +23,7 @@ export class WorkerPane {
     {size?: [width: number, height: number, pixel_ratio: number]; camera: Camera | null; look?: Look} = {camera: null};
   #undrawn: Snapshot[] = []; // added to the renderer, not acknowledged yet
   readonly #newest = new Map<number, Snapshot>(); // by island
+  readonly #picks: Extract<ForPane, {kind: "pick"}>[] = []; // not answered yet
   #follows = false;
   #is_fresh = false; // a snapshot is not reported yet
   #are_tiles_fresh = false;
@@ -80,6 +81,7 @@ export class WorkerPane {
       this.#renderer?.view.read(newest.info, now_ms); // so that this frame has the labels of the report that follows
     }
     this.#renderer?.draw(now_ms);
+    this.#answer_picks();
     for (const snapshot of this.#undrawn.splice(0)) {
       if (this.feed.subscription) {
         acknowledge(this.feed.subscription, snapshot);
@@ -176,17 +178,24 @@ export class WorkerPane {
         renderer?.change({population: message.columns});
         break;
       case "pick":
-        this.#post({
-          kind: "picked",
-          id: message.id,
-          ...(renderer?.view.pick(message.x, message.y, message.radius) ?? nothing_picked)
-        });
+        this.#picks.push(message);
+        this.#answer_picks();
         break;
       case "ask_columns":
         this.#post({kind: "columns", id: message.id, columns: this.newest()});
         break;
       default:
         none_left(message);
+    }
+  }
+
+  /** Answers the picks, those from before the first frame after it. */
+  #answer_picks(): void {
+    const view = this.#renderer?.view;
+    if (view?.is_drawn && this.#settings.size) {
+      for (const {id, x, y, radius} of this.#picks.splice(0)) {
+        this.#post({kind: "picked", id, ...(view.pick(x, y, radius) ?? nothing_picked)});
+      }
     }
   }
 

@@ -36,7 +36,7 @@ export class Placing {
     this.#world = world;
     this.#shown = world.shown;
     this.#island = world.island;
-    this.#run_id = world.info?.run_id;
+    this.#run_id = world.snapshot?.run_id;
   }
 
   /** Places everything or, if the server refuses, nothing. */
@@ -51,7 +51,7 @@ export class Placing {
       return;
     }
     const world = this.#world,
-          is_same_run = (): boolean => world.shown === this.#shown && world.info?.run_id === this.#run_id;
+          is_same_run = (): boolean => world.shown === this.#shown && world.snapshot?.run_id === this.#run_id;
     const count = (kind: Kind): number => this.#placed.reduce((sum, {answer}) => sum + (answer[kind]?.length ?? 0), 0);
     world.undo.add({
       name: undo_texts.placed(count("food"), count("poison"), count("organisms")),
