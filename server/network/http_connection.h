@@ -50,7 +50,7 @@ struct HttpPage {
 /// A file that never changes while the server runs.
 struct HttpFile {
     WebAsset compressed;
-    std::string_view plain = {}; // for clients that do not accept gzip; empty: they are refused
+    std::string plain; // for clients that do not accept gzip
 };
 
 class HttpConnection;

@@ -160,12 +160,9 @@ std::string embedder_problem(const std::string& origin) {
                      "http://localhost:* for all its ports";
 }
 
-bool accepts_gzip(const std::optional<std::string>& accept_encoding) {
-    if (!accept_encoding) {
-        return true;
-    }
+bool accepts_gzip(std::string_view accept_encoding) {
     bool accepts_all = false;
-    for (const std::string_view item : items_of(*accept_encoding)) {
+    for (const std::string_view item : items_of(accept_encoding)) {
         const auto semicolon = item.find(';');
         const std::string_view name = trimmed(item.substr(0, semicolon));
         const std::string_view weight =

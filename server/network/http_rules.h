@@ -52,8 +52,9 @@ std::string content_security_policy(std::string_view host, bool tls, const std::
 /// What is wrong with an origin that may embed the page; empty: nothing. http://localhost:* means all ports.
 std::string embedder_problem(const std::string& origin);
 
-/// Whether a client with this Accept-Encoding takes gzip. An absent field accepts everything.
-bool accepts_gzip(const std::optional<std::string>& accept_encoding);
+/// Whether a client with this Accept-Encoding takes gzip. Clients without the field (empty), such as curl, rarely
+/// decompress, and get the plain bytes.
+bool accepts_gzip(std::string_view accept_encoding);
 
 /// Whether If-None-Match contains the entity tag, or "*".
 bool has_entity_tag(std::string_view if_none_match, std::string_view etag);

@@ -288,7 +288,7 @@ base::Result<void> Server::open_http() {
                                  .needs_token = needs_token(options_.listeners)};
     service.pages["/healthz"] = {.make = [this] { return health(); }};
     for (const WebAsset& asset : web_assets()) {
-        service.files.push_back({.compressed = asset});
+        service.files.push_back({.compressed = asset, .plain = codec::gunzip(asset.bytes)});
     }
     service.files.push_back(schema_file());
     service.admit = host_.admit;

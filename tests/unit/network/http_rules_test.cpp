@@ -81,7 +81,6 @@ TEST(ContentSecurityPolicy, AnEmbedderIsAnOrigin) {
 }
 
 TEST(AcceptEncoding, GzipMayBeNamedOrImplied) {
-    EXPECT_TRUE(accepts_gzip(std::nullopt));
     for (const char* field :
          {"gzip", "br, GZIP", "gzip;q=0.001", "*", "identity;q=0, *;q=0.5", "deflate,gzip ; q=1.0"}) {
         EXPECT_TRUE(accepts_gzip(field)) << field;
