@@ -1,4 +1,4 @@
-// Checks that the experiments with neural networks, rooy.json and brains.json, evolve as docs/MODEL.md states.
+// Checks that the experiments with neural networks, rooy.json and brains.json, evolve as docs/BRAINS.md states.
 //
 // Seeds are literals, so the runs, and therefore the results, are always the same. A deliberate change of the model may
 // make a mean differ by chance: the known means of rooy.json come from ten runs of the program that it repeats (seeds 1
