@@ -31,7 +31,7 @@ export type ActorKind = "ACTOR_KIND_UNSPECIFIED"|"ACTOR_KIND_CLIENT"|"ACTOR_KIND
   "ACTOR_KIND_SERVER";
 
 /** Whether a world runs.
- *  RUN_STATE_WAITING: the world is idle until Run
+ *  RUN_STATE_WAITING: the world waits for Run or RunUntilTick
  *  RUN_STATE_PAUSED: the world has a goal but is paused
  *  RUN_STATE_TERMINATED: a termination criterion has ended the run */
 export type RunState = "RUN_STATE_UNSPECIFIED"|"RUN_STATE_WAITING"|"RUN_STATE_RUNNING"|"RUN_STATE_PAUSED"|
@@ -1144,8 +1144,8 @@ export interface ResetWorld {
 }
 
 /** Copies a world as one of its generations was bred, before the first tick and without the commands since, or at the
- *  current tick. The copy has the seed, organisms, parameters and schedule that the world had at that moment. The copy is
- *  idle until Run. Before the answer, the server reads the run file of the copy back. */
+ *  current tick. The copy has the seed, organisms, parameters and schedule that the world had at that moment. The copy
+ *  waits for Run. Before the answer, the server reads the run file of the copy back. */
 export interface ForkWorld {
   /** the world to copy; it may be a replay */
   world?: string;
