@@ -22,21 +22,33 @@
 
 namespace evod::network {
 
+base::Result<void> Server::check(const ListenerOptions& listeners) {
+    if (auto sound = Listener::check(listeners.bind_address, "--bind"); !sound) {
+        return sound;
+    }
+    if (listeners.http) {
+        if (auto sound = Listener::check(listeners.http->bind_address, "--http-bind"); !sound) {
+            return sound;
+        }
+    }
+    if (listeners.tls) {
+        if (auto tls = access::server_context(*listeners.tls); !tls) {
+            return tls.error();
+        }
+    }
+    return {};
+}
+
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
     // From here on signals are queued, even while worlds are being restored. run() handles them.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         server->signals_.add(signal);
     }
-    // Check the command line before files are opened and worlds are restored.
+    // Check the options before files are opened and worlds are restored.
     const ListenerOptions& listeners = server->options_.listeners;
-    if (auto sound = Listener::check(listeners.bind_address, "--bind"); !sound) {
+    if (auto sound = check(listeners); !sound) {
         return sound.error();
-    }
-    if (listeners.http) {
-        if (auto sound = Listener::check(listeners.http->bind_address, "--http-bind"); !sound) {
-            return sound.error();
-        }
     }
     if (listeners.tls) {
         auto tls = access::server_context(*listeners.tls);
