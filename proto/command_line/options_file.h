@@ -1,5 +1,5 @@
-// Options file: a file with options of a program, one on a line: `name = value`, or the name alone for a flag. The names
-// are those of the long options without dashes. `#` begins a comment, at the start of a line or after a blank.
+// Options file: a file with options of a program, one on a line: `name = value`, or the name alone for a flag. The
+// names are those of the long options without dashes. `#` begins a comment, at the start of a line or after a blank.
 //
 // Threads  one.
 #pragma once
