@@ -204,6 +204,18 @@ void add_storage_options(Command& command, ServeOptions& options) {
         .check(WholeNumber{1, 1'000'000'000})
         .excludes(keep_nothing)
         .show_default();
+    command
+        .add_option("--keep-runs", &options.storage.keep_runs,
+                    "Keep only the newest N ended runs of each world, and delete older ones when a run ends; default: "
+                    "all")
+        .check(WholeNumber{0, 1'000'000'000})
+        .excludes(keep_nothing);
+    command
+        .add_option("--disk-max", &options.storage.disk_bytes_max,
+                    "Size of the data folder in bytes above which the server writes nothing, as if the disk were "
+                    "full; default: the whole disk")
+        .check(WholeNumber{std::uint64_t{1} << 20, std::uint64_t{1} << 60})
+        .excludes(keep_nothing);
 }
 
 } // namespace
@@ -298,7 +310,8 @@ base::Result<network::ServerOptions> server_options(const ServeOptions& options,
                                                                                       : run_file::Durability::Full,
                                         .vfs = nullptr,
                                         .file_bytes_max = options.file_bytes_max,
-                                        .keep_every = options.keep_every}};
+                                        .keep_every = options.keep_every},
+                          .limits = options.storage};
     }
     return serving(std::move(worlds), options);
 }

@@ -43,6 +43,7 @@ struct ServeOptions {
     } tls;
     std::string durability = "full";
     std::int64_t file_bytes_max = run_file::RunFile::Options{}.file_bytes_max;
+    recording::StorageLimits storage;
     std::uint64_t keep_every = run_file::RunFile::Options{}.keep_every;
 };
 

@@ -7,6 +7,7 @@
 #include "server/protocol/commands.h"
 #include "server/protocol/public_text.h"
 #include "server/protocol/worlds.h"
+#include "server/run_file/ended_runs.h"
 #include "server/runtime/random_ids.h"
 #include "server/runtime/worker_pool.h"
 
@@ -139,6 +140,16 @@ base::Result<void> Server::open_worlds(const LiveWorlds& worlds) {
             return archive.error();
         }
         archive_ = *std::move(archive);
+        archive_->thread()->disk().set_limits(worlds.storage->limits);
+        if (const auto keep = worlds.storage->limits.keep_runs) {
+            const auto deleted = run_file::prune(worlds.storage->folder, *keep);
+            if (!deleted) {
+                return deleted.error();
+            }
+            if (!deleted->empty()) {
+                log::info("--keep-runs {}: deleted {} runs", *keep, deleted->size());
+            }
+        }
         host_.storage = protocol::to_proto(simulation::Storage{});
         host_.durability =
             archive_->durability() == run_file::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
