@@ -149,9 +149,9 @@ void add_storage(v1::Metrics& to, const std::string& folder, recording::StorageT
     }
     add_gauge(to, "evod_disk_bytes", "Bytes of all files in the data folder")
         .add(number(run_file::bytes_of_folder(folder)));
-    if (const auto bytes_max = thread.disk().limits().disk_bytes_max) {
-        add_gauge(to, "evod_disk_bytes_max", "Limit of these bytes, --disk-max; above it, nothing is written")
-            .add(number(*bytes_max));
+    auto bytes_max = add_gauge(to, "evod_disk_bytes_max", "Limit of these bytes, --disk-max; without it, no value");
+    if (const auto limit = thread.disk().limits().disk_bytes_max) {
+        bytes_max.add(number(*limit));
     }
     auto state = add_gauge(to, "evod_storage_state", "State of the disk: 1 for the current state");
     for (const auto& [value, name] : storage_states) {
