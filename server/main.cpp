@@ -57,6 +57,9 @@ int main(int argument_count, char** arguments) {
     add_replay_command(app);
     add_verify_command(app);
     add_export_command(app);
+    add_backup_command(app);
+    add_prune_command(app);
+    add_check_config_command(app);
     add_token_command(app);
     add_certificate_command(app);
     add_parameters_command(app);

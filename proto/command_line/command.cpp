@@ -1,5 +1,6 @@
 #include "proto/command_line/command.h"
 
+#include "proto/command_line/options_file.h"
 #include "proto/command_line/terminal.h"
 #include "proto/command_line/usage_error.h"
 #include "proto/command_line/words.h"
@@ -164,6 +165,12 @@ Option Command::add_flag(const std::string& name, bool* target, const std::strin
     return Option{option_group_.empty() ? option : option->group(option_group_)};
 }
 
+Option Command::add_options_file(const std::string& name, const std::string& help) {
+    const Option option = add_option(name, &keep(std::string{}), help);
+    options_file_ = app_->get_option(name);
+    return option;
+}
+
 Command& Command::add_command(const std::string& name, const std::string& help) {
     app_->require_subcommand(action_ ? 0 : 1, 1);
     commands_.push_back(Command{app_->get_subcommand_ptr(app_->add_subcommand(name, help))});
@@ -208,17 +215,39 @@ Command& Command::set_action(std::function<int()> action) {
 
 std::optional<int> Command::parse(int argument_count, const char* const* arguments) {
     try {
-        app_->parse(argument_count, arguments);
-        if (!owner_.empty()) {
-            hand_down_options(*app_, owner_);
-        }
-        return std::nullopt;
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-            return app_->exit(error); // prints the help or the version
-        }
-        return reject(text_of(error, *app_));
+        const std::vector<std::string> errors = read({arguments + 1, arguments + argument_count});
+        return errors.empty() ? std::nullopt : std::optional{reject(joined(errors, "\n"))};
+    } catch (const CLI::Success& text) {
+        return app_->exit(text); // prints the help or the version
     }
+}
+
+std::vector<std::string> Command::read(const std::vector<std::string>& words) {
+    const auto error_of = [this](std::vector<std::string> all) -> std::vector<std::string> {
+        std::ranges::reverse(all); // CLI11 takes the last word first
+        try {
+            app_->parse(std::move(all));
+            if (!owner_.empty()) {
+                hand_down_options(*app_, owner_);
+            }
+            return {};
+        } catch (const CLI::Success&) {
+            throw;
+        } catch (const CLI::ParseError& error) {
+            return {text_of(error, *app_)};
+        }
+    };
+    const std::vector<std::string> errors = error_of(words);
+    if (options_file_ == nullptr || options_file_->count() != 1 || !app_->get_subcommands().empty()) {
+        return errors;
+    }
+    // An option may be valid only together with one of the file, so the errors above may be none.
+    FileOptions file = read_options_file(options_file_->results().front(), *app_, *options_file_);
+    if (!file.errors.empty()) {
+        return file.errors;
+    }
+    file.words.insert(file.words.end(), words.begin(), words.end());
+    return error_of(file.words);
 }
 
 int Command::run() {

@@ -90,6 +90,9 @@ class Command {
     /// name  "--seed" for an option, "run" for a positional value, or "server,--server" for both.
     Option add_option(const std::string& name, Target target, const std::string& help);
     Option add_flag(const std::string& name, bool* target, const std::string& help);
+    /// Adds an option that names a file with further options; see options_file.h. Options of the command line win over
+    /// the file. Does not apply to subcommands.
+    Option add_options_file(const std::string& name, const std::string& help);
     /// Adds a subcommand. The reference stays valid. The user must give a subcommand, unless this command has its own
     /// action.
     Command& add_command(const std::string& name, const std::string& help);
@@ -133,6 +136,8 @@ class Command {
     /// Parses the command line. Returns nullopt if run() may follow. Otherwise prints the help, the version or the
     /// error, and returns the exit status.
     std::optional<int> parse(int argument_count, const char* const* arguments);
+    /// Parses like parse(), but returns the errors instead of printing them. The words must not ask for the help.
+    std::vector<std::string> read(const std::vector<std::string>& words);
     /// Runs the action of the given subcommand, or of the program if none was given. Returns the exit status.
     int run();
     /// Prints an error that parse() cannot detect, in the format of parse(). Returns the exit status.
@@ -169,7 +174,8 @@ class Command {
     std::function<int()> action_;
     std::string version_;      // of the program; empty for a subcommand
     std::string option_group_; // heading for the next options; empty: "Options"
-    std::string owner_;        // owner of options that are handed down; empty: none are handed down
+    CLI::Option* options_file_ = nullptr;
+    std::string owner_; // owner of options that are handed down; empty: none are handed down
     std::vector<Variable> variables_;
     std::vector<std::shared_ptr<void>> kept_;
 };

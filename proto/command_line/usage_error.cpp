@@ -45,13 +45,6 @@ std::string unexpected(const std::string& word, const CLI::App& command) {
     return word + ": unknown command" + (similar.empty() ? "; commands are " + joined(commands) : similar);
 }
 
-/// The text for an option without a value.
-std::string missing(const CLI::Option& option) {
-    const std::string kind = option.get_type_name();
-    const bool is_choice = kind.find('|') != std::string::npos;
-    return option.get_name() + ": got nothing, " + (is_choice ? "allowed " + kind : "a value is required");
-}
-
 const CLI::Option* find(const CLI::App& command, const auto& is_wanted) {
     for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) {
         for (const CLI::Option* option : app->get_options()) {
@@ -95,6 +88,12 @@ std::string conflict(const CLI::ParseError& error, const CLI::App& command) {
 }
 
 } // namespace
+
+std::string missing(const CLI::Option& option) {
+    const std::string kind = option.get_type_name();
+    const bool is_choice = kind.find('|') != std::string::npos;
+    return option.get_name() + ": got nothing, " + (is_choice ? "allowed " + kind : "a value is required");
+}
 
 const CLI::App& given_parser(const CLI::App& program) {
     const CLI::App* app = &program;

@@ -1,5 +1,5 @@
-// Printable: which characters of a text from a peer must not reach a terminal or a log. Standard library only, because
-// every folder may include this one.
+// Printable: which characters of a text from a peer or a file must not reach a terminal or a log, and which bytes are
+// UTF-8. Standard library only, because every folder may include this one.
 //
 // Threads      any; no state.
 #pragma once
@@ -29,6 +29,34 @@ inline std::size_t unsafe_character_bytes(std::string_view utf8) {
         return 3;
     }
     return 0;
+}
+
+/// Returns the length in bytes of the character at the start of `utf8`: 1 to 4; 0 if it is empty or not valid UTF-8.
+inline std::size_t character_bytes(std::string_view utf8) {
+    if (utf8.empty()) {
+        return 0;
+    }
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(utf8[i]); };
+    const std::size_t count = byte(0) < 0x80    ? 1
+                              : byte(0) < 0xc2  ? 0
+                              : byte(0) < 0xe0  ? 2
+                              : byte(0) < 0xf0  ? 3
+                              : byte(0) <= 0xf4 ? 4
+                                                : 0;
+    if (count > utf8.size()) {
+        return 0;
+    }
+    for (std::size_t i = 1; i < count; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) {
+            return 0;
+        }
+    }
+    // Overlong encodings, UTF-16 surrogates, and code points above U+10FFFF are invalid: RFC 3629 section 4.
+    if ((byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xed && byte(1) > 0x9f) ||
+        (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f)) {
+        return 0;
+    }
+    return count;
 }
 
 } // namespace evod::text

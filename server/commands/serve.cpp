@@ -130,10 +130,7 @@ bool is_server() {
 
 void add_server(Command& app) {
     auto& options = app.keep(ServeOptions{});
-    add_sharing_options(app, options.sharing);
-    add_server_options(app, options);
-    add_first_world_options(app, options);
-    add_storage_options(app, options);
+    add_all_options(app, options);
     app.footer("Without a subcommand, evod starts a server.");
     app.hand_options_down("the server");
     app.action([&options] {

@@ -153,46 +153,6 @@ base::Result<simulation::CreateWorld> first_world(const ServeOptions& options) {
     return create;
 }
 
-} // namespace
-
-void add_server_options(Command& command, ServeOptions& options) {
-    command.option_group("Listening");
-    command
-        .add_option("--bind", &options.bind_address, "IP address on which the server listens; 0.0.0.0: all interfaces")
-        .show_default();
-    command.add_option("--port", &options.port, "TCP port on which the server listens; 0: any free port")
-        .check(port_number)
-        .show_default();
-    add_http_options(command, options);
-    const auto add_limit = [&](const char* name, std::uint32_t& count, std::uint64_t least, const char* help) {
-        command.add_option(name, &count, help).check(WholeNumber{least, 1'000'000}).show_default();
-    };
-    add_limit(
-        "--sessions-max", options.limits.sessions_max, 2,
-        "Maximum number of simultaneous sessions, each of which uses one file descriptor; a user may have half of "
-        "them, without a token an address");
-    add_limit("--worlds-max", options.limits.worlds_max, 1, "Maximum number of worlds, without replays");
-    add_limit("--replays-max", options.limits.replays_max, 2,
-              "Maximum number of simultaneous replays; a user may have half of them");
-    command.option_group("Access and TLS");
-    command.add_flag(
-        "--require-token", &options.token_needed,
-        "Require a token even if the server listens only on the loopback interface; on other interfaces the "
-        "server always requires one");
-    add_tls_options(command, options.tls);
-    command.option_group("Log");
-    command
-        .add_option("--log-level", &options.log_level,
-                    "Lowest level that is logged on standard error; debug adds every refusal, trace every request")
-        .choices({log::level_names.begin(), log::level_names.end()})
-        .show_default();
-    command
-        .add_option("--log-format", &options.log_format,
-                    "Format of the log: text, or json with one JSON object per line")
-        .choices({"text", "json"})
-        .show_default();
-}
-
 void add_first_world_options(Command& command, ServeOptions& options) {
     command.option_group("First world");
     command.add_option("--experiment", &options.experiment_file,
@@ -244,6 +204,68 @@ void add_storage_options(Command& command, ServeOptions& options) {
         .check(WholeNumber{1, 1'000'000'000})
         .excludes(keep_nothing)
         .show_default();
+    command
+        .add_option("--keep-runs", &options.storage.keep_runs,
+                    "Keep only the newest N ended runs of each world, and delete older ones when a run ends; default: "
+                    "all")
+        .check(WholeNumber{0, 1'000'000'000})
+        .excludes(keep_nothing);
+    command
+        .add_option("--disk-max", &options.storage.disk_bytes_max,
+                    "Size of the data folder in bytes above which the server writes nothing, as if the disk were "
+                    "full; default: the whole disk")
+        .check(WholeNumber{std::uint64_t{1} << 20, std::uint64_t{1} << 60})
+        .excludes(keep_nothing);
+}
+
+} // namespace
+
+void add_server_options(Command& command, ServeOptions& options) {
+    command.option_group("Listening");
+    command
+        .add_option("--bind", &options.bind_address, "IP address on which the server listens; 0.0.0.0: all interfaces")
+        .show_default();
+    command.add_option("--port", &options.port, "TCP port on which the server listens; 0: any free port")
+        .check(port_number)
+        .show_default();
+    add_http_options(command, options);
+    const auto add_limit = [&](const char* name, std::uint32_t& count, std::uint64_t least, const char* help) {
+        command.add_option(name, &count, help).check(WholeNumber{least, 1'000'000}).show_default();
+    };
+    add_limit(
+        "--sessions-max", options.limits.sessions_max, 2,
+        "Maximum number of simultaneous sessions, each of which uses one file descriptor; a user may have half of "
+        "them, without a token an address");
+    add_limit("--worlds-max", options.limits.worlds_max, 1, "Maximum number of worlds, without replays");
+    add_limit("--replays-max", options.limits.replays_max, 2,
+              "Maximum number of simultaneous replays; a user may have half of them");
+    command.option_group("Access and TLS");
+    command.add_flag(
+        "--require-token", &options.token_needed,
+        "Require a token even if the server listens only on the loopback interface; on other interfaces the "
+        "server always requires one");
+    add_tls_options(command, options.tls);
+    command.option_group("Log");
+    command
+        .add_option("--log-level", &options.log_level,
+                    "Lowest level that is logged on standard error; debug adds every refusal, trace every request")
+        .choices({log::level_names.begin(), log::level_names.end()})
+        .show_default();
+    command
+        .add_option("--log-format", &options.log_format,
+                    "Format of the log: text, or json with one JSON object per line")
+        .choices({"text", "json"})
+        .show_default();
+}
+
+void add_all_options(Command& command, ServeOptions& options) {
+    command.add_options_file("--config",
+                             "Configuration file: one option on a line, such as port = 7744; options of the command "
+                             "line win; SIGHUP makes the server read it again");
+    add_sharing_options(command, options.sharing);
+    add_server_options(command, options);
+    add_first_world_options(command, options);
+    add_storage_options(command, options);
 }
 
 std::optional<simulation::Speed> parse_speed(const std::string& text) {
@@ -288,7 +310,8 @@ base::Result<network::ServerOptions> server_options(const ServeOptions& options,
                                                                                       : run_file::Durability::Full,
                                         .vfs = nullptr,
                                         .file_bytes_max = options.file_bytes_max,
-                                        .keep_every = options.keep_every}};
+                                        .keep_every = options.keep_every},
+                          .limits = options.storage};
     }
     return serving(std::move(worlds), options);
 }

@@ -43,14 +43,14 @@ struct ServeOptions {
     } tls;
     std::string durability = "full";
     std::int64_t file_bytes_max = run_file::RunFile::Options{}.file_bytes_max;
+    recording::StorageLimits storage;
     std::uint64_t keep_every = run_file::RunFile::Options{}.keep_every;
 };
 
 /// Adds the options of both `evod` and `evod replay`: addresses, access, TLS, metrics and log.
 void add_server_options(command_line::Command& command, ServeOptions& options);
-/// Adds the options of `evod` only.
-void add_first_world_options(command_line::Command& command, ServeOptions& options);
-void add_storage_options(command_line::Command& command, ServeOptions& options);
+/// Adds all options of `evod`, and --config.
+void add_all_options(command_line::Command& command, ServeOptions& options);
 
 /// Parses "max", or a number of simulated seconds per second. Returns nullopt for any other text.
 std::optional<simulation::Speed> parse_speed(const std::string& text);

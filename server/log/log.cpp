@@ -1,5 +1,7 @@
 #include "server/log/log.h"
 
+#include "proto/text/printable.h"
+
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -20,35 +22,10 @@ spdlog::level::level_enum to_spdlog(Level level) {
 static_assert(static_cast<int>(Level::Trace) == static_cast<int>(spdlog::level::trace) &&
               static_cast<int>(Level::Error) == static_cast<int>(spdlog::level::err));
 
-/// Returns the length in bytes of the UTF-8 character at the start of `text`: 1 to 4; 0 if it is not valid UTF-8.
-std::size_t character_bytes(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const std::size_t count = byte(0) < 0x80    ? 1
-                              : byte(0) < 0xc2  ? 0
-                              : byte(0) < 0xe0  ? 2
-                              : byte(0) < 0xf0  ? 3
-                              : byte(0) <= 0xf4 ? 4
-                                                : 0;
-    if (count > text.size()) {
-        return 0;
-    }
-    for (std::size_t i = 1; i < count; ++i) {
-        if ((byte(i) & 0xc0) != 0x80) {
-            return 0;
-        }
-    }
-    // Overlong encodings, UTF-16 surrogates, and code points above U+10FFFF are invalid: RFC 3629 section 4.
-    if ((byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xed && byte(1) > 0x9f) ||
-        (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f)) {
-        return 0;
-    }
-    return count;
-}
-
 std::string json_text(std::string_view text) {
     std::string quoted = "\"";
     while (!text.empty()) {
-        const std::size_t count = character_bytes(text);
+        const std::size_t count = text::character_bytes(text);
         const auto first = static_cast<unsigned char>(text[0]);
         // U+0080 to U+009F also control terminals.
         const unsigned control = count == 1 && (first < 0x20 || first == 0x7f) ? first

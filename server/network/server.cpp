@@ -7,6 +7,7 @@
 #include "server/protocol/commands.h"
 #include "server/protocol/public_text.h"
 #include "server/protocol/worlds.h"
+#include "server/run_file/ended_runs.h"
 #include "server/runtime/random_ids.h"
 #include "server/runtime/worker_pool.h"
 
@@ -22,21 +23,33 @@
 
 namespace evod::network {
 
+base::Result<void> Server::check(const ListenerOptions& listeners) {
+    if (auto sound = Listener::check(listeners.bind_address, "--bind"); !sound) {
+        return sound;
+    }
+    if (listeners.http) {
+        if (auto sound = Listener::check(listeners.http->bind_address, "--http-bind"); !sound) {
+            return sound;
+        }
+    }
+    if (listeners.tls) {
+        if (auto tls = access::server_context(*listeners.tls); !tls) {
+            return tls.error();
+        }
+    }
+    return {};
+}
+
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
     // From here on signals are queued, even while worlds are being restored. run() handles them.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         server->signals_.add(signal);
     }
-    // Check the command line before files are opened and worlds are restored.
+    // Check the options before files are opened and worlds are restored.
     const ListenerOptions& listeners = server->options_.listeners;
-    if (auto sound = Listener::check(listeners.bind_address, "--bind"); !sound) {
+    if (auto sound = check(listeners); !sound) {
         return sound.error();
-    }
-    if (listeners.http) {
-        if (auto sound = Listener::check(listeners.http->bind_address, "--http-bind"); !sound) {
-            return sound.error();
-        }
     }
     if (listeners.tls) {
         auto tls = access::server_context(*listeners.tls);
@@ -127,6 +140,16 @@ base::Result<void> Server::open_worlds(const LiveWorlds& worlds) {
             return archive.error();
         }
         archive_ = *std::move(archive);
+        archive_->thread()->disk().set_limits(worlds.storage->limits);
+        if (const auto keep = worlds.storage->limits.keep_runs) {
+            const auto deleted = run_file::prune(worlds.storage->folder, *keep);
+            if (!deleted) {
+                return deleted.error();
+            }
+            if (!deleted->empty()) {
+                log::info("--keep-runs {}: deleted {} runs", *keep, deleted->size());
+            }
+        }
         host_.storage = protocol::to_proto(simulation::Storage{});
         host_.durability =
             archive_->durability() == run_file::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;

@@ -27,6 +27,8 @@ namespace evod::network {
 
 class Server {
   public:
+    /// Checks the addresses and reads the certificates, without opening a port. A refusal names the option.
+    static base::Result<void> check(const ListenerOptions& listeners);
     /// Restores the worlds of the data folder and opens the port. The message of a refusal is written for the user who
     /// starts the server.
     static base::Result<std::unique_ptr<Server>> open(ServerOptions options);

@@ -12,6 +12,8 @@
 #include "server/network/web_assets.h"
 #include "server/protocol/public_text.h"
 #include "server/protocol/refusals.h"
+#include "server/run_file/data_folder.h"
+#include "server/run_file/ended_runs.h"
 
 #include <unistd.h>
 
@@ -137,7 +139,20 @@ void add_pools(v1::Metrics& to, const std::vector<std::pair<Limit, base::Quota>>
     }
 }
 
-void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::Storage& storage) {
+void add_storage(v1::Metrics& to, const std::string& folder, recording::StorageThread& thread,
+                 const v1::Storage& storage) {
+    auto world_bytes = add_gauge(to, "evod_world_bytes", "Bytes of the run file of a world, with its write-ahead log");
+    if (const auto files = run_file::DataFolder::files_in(folder)) {
+        for (const std::string& path : files->of_worlds) {
+            world_bytes.add(number(run_file::bytes_of_run(path)), {{"world", run_file::world_of(path)}});
+        }
+    }
+    add_gauge(to, "evod_disk_bytes", "Bytes of all files in the data folder")
+        .add(number(run_file::bytes_of_folder(folder)));
+    auto bytes_max = add_gauge(to, "evod_disk_bytes_max", "Limit of these bytes, --disk-max; without it, no value");
+    if (const auto limit = thread.disk().limits().disk_bytes_max) {
+        bytes_max.add(number(*limit));
+    }
     auto state = add_gauge(to, "evod_storage_state", "State of the disk: 1 for the current state");
     for (const auto& [value, name] : storage_states) {
         state.add(storage.state() == value, {{"state", name}});
@@ -212,7 +227,7 @@ v1::Metrics Server::metrics() {
     }
     add_pools(all, pools);
     if (archive_ && archive_->thread() != nullptr && host_.storage) {
-        add_storage(all, *archive_->thread(), *host_.storage);
+        add_storage(all, archive_->path(), *archive_->thread(), *host_.storage);
     }
 
     const metrics::Process process = metrics::read_process();

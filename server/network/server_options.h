@@ -7,6 +7,7 @@
 #include "proto/codec/framing.h"
 #include "server/access/tls.h"
 #include "server/network/limits.h"
+#include "server/recording/disk_state.h"
 #include "server/run_file/run_file.h"
 #include "server/runtime/processes.h"
 #include "server/simulation/commands.h"
@@ -68,6 +69,7 @@ struct FirstCommands {
 struct StorageOptions {
     std::string folder;
     run_file::RunFile::Options run_files;
+    recording::StorageLimits limits = {};
 };
 
 /// The processes that simulate worlds together; this is the one with rank 0.

@@ -26,6 +26,16 @@ void DiskState::set_faults(RunFaults faults) {
     }
 }
 
+StorageLimits DiskState::limits() const {
+    const std::lock_guard lock{mutex_};
+    return limits_;
+}
+
+void DiskState::set_limits(const StorageLimits& limits) {
+    const std::lock_guard lock{mutex_};
+    limits_ = limits;
+}
+
 void DiskState::when_changed(std::function<void()> changed) {
     const std::lock_guard lock{mutex_};
     when_changed_ = std::move(changed);

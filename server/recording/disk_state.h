@@ -9,12 +9,19 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 
 namespace evod::recording {
+
+/// How much a data folder may contain. Both may change while the server runs.
+struct StorageLimits {
+    std::optional<std::uint64_t> keep_runs = {};      // newest ended runs of each world that stay; nullopt: all
+    std::optional<std::uint64_t> disk_bytes_max = {}; // of the whole folder; above it, nothing is written
+};
 
 class DiskState {
   public:
@@ -31,6 +38,9 @@ class DiskState {
     /// block nor call this object. When this function returns, the previous callback is not called any more.
     void when_changed(std::function<void()> changed);
 
+    StorageLimits limits() const;
+    void set_limits(const StorageLimits& limits);
+
     void added(std::size_t bytes) { waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed); }
     void written(std::size_t bytes);
     /// why  the reason why nothing can be written; empty: writing works.
@@ -42,6 +52,7 @@ class DiskState {
     mutable std::mutex mutex_; // guards the members below
     std::string trouble_;
     RunFaults faults_;
+    StorageLimits limits_;
     std::function<void()> when_changed_;
 };
 

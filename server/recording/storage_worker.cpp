@@ -2,6 +2,7 @@
 
 #include "server/log/log.h"
 #include "server/run_file/data_folder.h"
+#include "server/run_file/ended_runs.h"
 
 #include <pthread.h>
 
@@ -111,8 +112,13 @@ bool StorageWorker::work() {
         for (auto& [number, run] : runs_) {
             jobs_.compress_next(run);
         }
-        more = write_records();
-        if (first_try && skipped < skipped_max && queue_.is_urgent()) {
+        if (!stopping) { // what waits then is small, and would be lost
+            check_quota();
+        }
+        more = !failure_ && write_records();
+        if (failure_) {
+            // Nothing can be written in this round.
+        } else if (first_try && skipped < skipped_max && queue_.is_urgent()) {
             ++skipped;
             more = true;
         } else {
@@ -319,8 +325,44 @@ bool StorageWorker::end(RunLog& run) {
     if (const auto renamed = run.rename_ended_file(); !renamed) {
         return fail(run, renamed.error());
     }
+    prune(run);
     finish(closing);
     return true;
+}
+
+void StorageWorker::prune(const RunLog& ended) {
+    const auto keep = disk_.limits().keep_runs;
+    if (!keep || ended.closing->renamed.empty()) {
+        return;
+    }
+    const std::string world = run_file::world_of(ended.path);
+    const auto deleted = run_file::prune(std::filesystem::path{ended.path}.parent_path().string(), *keep, world);
+    if (!deleted) {
+        log::warn({.world = world}, "--keep-runs: {}", deleted.error().message);
+        return;
+    }
+    for (const run_file::EndedRun& run : *deleted) {
+        log::info({.world = world}, "--keep-runs {}: deleted {}", *keep, run.path);
+    }
+}
+
+void StorageWorker::check_quota() {
+    constexpr std::chrono::seconds interval{1};
+    const auto bytes_max = disk_.limits().disk_bytes_max;
+    if (!bytes_max || runs_.empty()) {
+        return;
+    }
+    const std::string folder = std::filesystem::path{runs_.begin()->second.path}.parent_path().string();
+    const auto now = std::chrono::steady_clock::now();
+    if (is_over_quota_ || now - quota_checked_ >= interval) { // while it is exceeded, at each attempt to write
+        is_over_quota_ = run_file::bytes_of_folder(folder) > *bytes_max;
+        quota_checked_ = now;
+    }
+    if (is_over_quota_) {
+        fail(refusal(base::RefusalCode::Unavailable,
+                     "the data folder " + folder + " contains more than --disk-max allows, " +
+                         std::to_string(*bytes_max) + " bytes: delete old runs with evod prune, or raise the limit"));
+    }
 }
 
 void StorageWorker::finish(Closing& closing) {

@@ -50,6 +50,10 @@ class StorageWorker {
     bool commit(RunLog& run, const std::vector<WaitingRecord>& records);
     bool rename_to_final_name(RunLog& run);
     bool end(RunLog& run);
+    /// Deletes old runs of the world whose run has just ended, if the limits say so.
+    void prune(const RunLog& ended);
+    /// Fails if the folder contains more than the limits allow.
+    void check_quota();
     /// Ends a run whose file is damaged. A deleted world's file gets its final name, so that the name of the world is
     /// free.
     bool end_damaged(RunLog& run);
@@ -83,8 +87,10 @@ class StorageWorker {
     std::map<RunNumber, RunLog> runs_;
     RunNumber last_written_ = 0, last_background_ = 0; // the last runs that were served
     std::optional<base::Refusal> failure_;             // the first write that has failed in this round
-    bool advanced_ = false;                            // something has been written in this round
-    bool lost_ = false; // the last records of a run were lost, because its file is damaged
+    std::chrono::steady_clock::time_point quota_checked_ = {};
+    bool is_over_quota_ = false;
+    bool advanced_ = false; // something has been written in this round
+    bool lost_ = false;     // the last records of a run were lost, because its file is damaged
 };
 
 } // namespace evod::recording

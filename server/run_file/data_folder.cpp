@@ -86,14 +86,14 @@ base::Result<void> DataFolder::move_aside(const std::string& world) const {
     return {};
 }
 
-base::Result<DataFolder::Files> DataFolder::files() const {
+base::Result<DataFolder::Files> DataFolder::files_in(const std::string& path) {
     Files files;
     std::error_code error;
-    for (fs::directory_iterator file{path_, error}, end; !error && file != end; file.increment(error)) {
+    for (fs::directory_iterator file{path, error}, end; !error && file != end; file.increment(error)) {
         const std::string name = file->path().filename().string();
         const std::string next = next_file_of(std::string{ending});
         if (name.ends_with(next) && simulation::is_world_name(name.substr(0, name.size() - next.size()))) {
-            files.replaced.push_back(path_ + "/" + name.substr(0, name.size() - next.size()) + std::string{ending});
+            files.replaced.push_back(path + "/" + name.substr(0, name.size() - next.size()) + std::string{ending});
         }
         if (!name.ends_with(ending)) {
             continue;
@@ -107,7 +107,7 @@ base::Result<DataFolder::Files> DataFolder::files() const {
         (simulation::is_world_name(stem.substr(0, dot)) ? paths : files.strange).push_back(file->path().string());
     }
     if (error) {
-        return unusable(path_, error.message());
+        return unusable(path, error.message());
     }
     for (std::vector<std::string>* paths : {&files.of_worlds, &files.ended, &files.replaced, &files.strange}) {
         std::sort(paths->begin(), paths->end());

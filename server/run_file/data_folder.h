@@ -39,7 +39,9 @@ class DataFolder {
         std::vector<std::string> replaced;
         std::vector<std::string> strange; // paths that end in .evod but contain no valid world name
     };
-    base::Result<Files> files() const;
+    base::Result<Files> files() const { return files_in(path_); }
+    /// The files of a folder that another server may use.
+    static base::Result<Files> files_in(const std::string& path);
 
   private:
     DataFolder(std::string path, int lock) : path_{std::move(path)}, lock_{lock} {}

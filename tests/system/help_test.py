@@ -28,7 +28,7 @@ def tables(program, words=()):
     options = set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", text, re.M)) | set(re.findall(r"^  -\w,(--[\w-]+)", text, re.M))
     listed = text.split("\n\n")
     commands = [name for part in listed if not re.match(r"\w.*:\n  -|Options|Positionals|Usage|Examples", part)
-                for name in re.findall(r"^  ([a-z]+) {3,}\S", part, re.M)] if "SUBCOMMAND" in text else []
+                for name in re.findall(r"^  ([a-z-]+) {3,}\S", part, re.M)] if "SUBCOMMAND" in text else []
     yield tuple(words), options, commands
     for name in commands:
         yield from tables(program, (*words, name))

@@ -311,10 +311,13 @@ UNIT_TESTED_ELSEWHERE = {
     ("server", "main"): "system/console_test",
     ("server/base", "column"): "unit/physics and unit/simulation: the memory of all columns",
     ("server/evolution", "free_genes"): "unit/evolution/free_gene_operators_test",
+    ("server/commands", "backup"): "system/backup_test; its logic is run_file/backup",
     ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
+    ("server/commands", "check_config"): "system/config_test; its logic is command_line/options_file",
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/run_file_fork and replay/verify",
     ("server/commands", "json_lines"): "unit/commands/run_test, sweep_test and compare_test: options of these commands",
     ("server/commands", "shared_worlds"): "system/mpi_test",
+    ("server/commands", "prune"): "system/disk_space_test; its logic is run_file/ended_runs",
     ("server/commands", "limits parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
     ("server/simulation", "local_islands run_parameters"): "unit/simulation/world_test and scheduled_world_test",
     ("server/simulation/shared", "part"): "tests/determinism/shared_world_test and shared_laboratory_test",
@@ -329,6 +332,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker"):
         "unit/recording/storage_thread_test and recorder_test",
     ("server/replay", "table"): "unit/replay/run_tables_test",
+    ("server/run_file", "backup"): "system/backup_test: it needs a running server",
     ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents "
                         "run_database "
                         "schema table"): "unit/run_file/run_file_test, damage_test and checkpoint_test: parts of one "

@@ -18,5 +18,15 @@ TEST(Printable, UnsafeCharactersAreMeasured) {
     }
 }
 
+TEST(Printable, CharactersOfUtf8AreMeasured) {
+    EXPECT_EQ(character_bytes("a"), 1u);
+    EXPECT_EQ(character_bytes("é"), 2u);
+    EXPECT_EQ(character_bytes("…"), 3u);
+    EXPECT_EQ(character_bytes("\xf0\x9f\x90\x81"), 4u);
+    for (const char* const invalid : {"", "\xff", "\x80", "\xc0\xaf", "\xe2\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80"}) {
+        EXPECT_EQ(character_bytes(invalid), 0u) << invalid;
+    }
+}
+
 } // namespace
 } // namespace evod::text

@@ -1,0 +1,77 @@
+#include "server/run_file/ended_runs.h"
+
+#include "server/run_file/data_folder.h"
+
+#include <algorithm>
+#include <map>
+#include <system_error>
+#include <tuple>
+
+namespace evod::run_file {
+
+namespace fs = std::filesystem;
+using base::Result;
+
+Result<std::vector<EndedRun>> surplus_runs(const std::string& folder, std::uint64_t keep, const std::string& world) {
+    const auto files = DataFolder::files_in(folder);
+    if (!files) {
+        return files.error();
+    }
+    std::vector<EndedRun> runs;
+    for (const std::string& path : files->ended) {
+        const std::string stem = world_of(path);
+        std::error_code error;
+        runs.push_back({stem.substr(0, stem.find('.')), path, bytes_of_run(path), fs::last_write_time(path, error)});
+    }
+    std::ranges::sort(runs, {}, [](const EndedRun& run) { return std::tie(run.ended, run.path); });
+    std::map<std::string, std::uint64_t> surplus;
+    for (const EndedRun& run : runs) {
+        ++surplus[run.world];
+    }
+    for (auto& [name, count] : surplus) {
+        count = world.empty() || name == world ? count - std::min(count, keep) : 0;
+    }
+    std::erase_if(runs, [&](const EndedRun& run) { // called once for each run, in their order
+        std::uint64_t& left = surplus[run.world];
+        return left == 0 || (--left, false);
+    });
+    return runs;
+}
+
+Result<std::vector<EndedRun>> prune(const std::string& folder, std::uint64_t keep, const std::string& world) {
+    auto runs = surplus_runs(folder, keep, world);
+    if (runs) {
+        for (const EndedRun& run : *runs) {
+            if (auto removed = remove_run_file(run.path); !removed) {
+                return removed.error();
+            }
+        }
+    }
+    return runs;
+}
+
+std::uint64_t bytes_of_run(const std::string& path) {
+    std::uint64_t bytes = 0;
+    for (const char* suffix : {"", "-wal", "-shm"}) {
+        std::error_code error;
+        if (const auto size = fs::file_size(path + suffix, error); !error) {
+            bytes += size;
+        }
+    }
+    return bytes;
+}
+
+std::uint64_t bytes_of_folder(const std::string& folder) {
+    std::uint64_t bytes = 0;
+    std::error_code error;
+    for (fs::directory_iterator file{folder, error}, end; !error && file != end; file.increment(error)) {
+        std::error_code gone; // a file may be deleted meanwhile
+        if (file->is_regular_file(gone)) {
+            const auto size = file->file_size(gone);
+            bytes += gone ? 0 : size;
+        }
+    }
+    return bytes;
+}
+
+} // namespace evod::run_file
