@@ -2,6 +2,7 @@
 // when.
 import {common_texts} from "../texts/common";
 import {events_texts as texts} from "../texts/events";
+import {language} from "../texts/language";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {check, hint} from "../widgets/form";
@@ -138,7 +139,7 @@ export class EventsPanel implements Panel {
     set_text(this.#empty, this.#rows.length > 0 ? texts.none_of_kind : texts.none_yet);
     this.#list.replaceChildren(...rows.map(
       (row) =>
-        row_of(texts.event_place(new Date(row.time_ms).toLocaleTimeString("en-GB"), row.world, row.tick), row.text)));
+        row_of(texts.event_place(new Date(row.time_ms).toLocaleTimeString(language.times), row.world, row.tick), row.text)));
   }
 }
 
