@@ -13,6 +13,7 @@ import type {Event as ProtocolEvent} from "../core/protocol";
 import type {Panel, PanelContext} from "../world/panel_context";
 
 const rows_max = 500;
+const time_of_day = (time_ms: number): string => new Date(time_ms).toLocaleTimeString(language.times);
 const fields_characters_max = 300; // of a command in the journal
 
 interface Row {
@@ -139,7 +140,7 @@ export class EventsPanel implements Panel {
     set_text(this.#empty, this.#rows.length > 0 ? texts.none_of_kind : texts.none_yet);
     this.#list.replaceChildren(...rows.map(
       (row) =>
-        row_of(texts.event_place(new Date(row.time_ms).toLocaleTimeString(language.times), row.world, row.tick), row.text)));
+        row_of(texts.event_place(time_of_day(row.time_ms), row.world, row.tick), row.text)));
   }
 }
 

@@ -1,4 +1,4 @@
-// Texts about parameters in place of those that the server sends. The server sends English ones, so there are none here.
+// Texts about parameters in place of those that the server sends. They are English, so there are none here.
 interface Words {
   readonly [name: string]: string|undefined;
 }

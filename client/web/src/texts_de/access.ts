@@ -1,4 +1,4 @@
-// Warum eine Anfrage jetzt nicht möglich ist.
+// Why the user may not send a request now.
 import type * as english from "../texts/access";
 
 export const access_texts: typeof english.access_texts = {

@@ -1,12 +1,11 @@
-// Rund um die Welten: Titel, Knöpfe der Spalte, Hinweise, Links.
+// What people read around the worlds: the title, buttons of the column, banners, notices, links.
 import type * as english from "../texts/app";
 
 export const app_texts: typeof english.app_texts = {
   title: (world) => world === "" ? "evod" : `${world} – evod`,
   about: (has_items) => "Evolution, live: " +
-    (has_items ?
-       "Organismen müssen Futter finden und Gift meiden; die fittesten zeugen die nächste Generation." :
-       "Die fittesten Organismen jeder Generation zeugen die nächste."),
+    (has_items ? "Organismen müssen Futter finden und Gift meiden; die fittesten zeugen die nächste Generation." :
+                 "Die fittesten Organismen jeder Generation zeugen die nächste."),
   no_world: "Der Server hat noch keine Welt.",
   new_world: "Neue Welt …",
   skip: "Zur Welt springen",

@@ -1,4 +1,4 @@
-// Der beste Organismus eines Laufs.
+// Texts about the best organism of a run.
 import type * as english from "../texts/best_solution";
 
 import {fitness_text, with_separators} from "./numbers";

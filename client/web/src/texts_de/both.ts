@@ -1,4 +1,4 @@
-// Der Knopf, der beide Welten laufen lässt.
+// The button that runs both worlds.
 import type * as english from "../texts/both";
 
 export const both_texts: typeof english.both_texts = {

@@ -1,4 +1,4 @@
-// Die Zeichnung eines Netzes im Bereich „Organismus“.
+// brain: the drawing of a network in the panel "Organism".
 import type * as english from "../texts/brain";
 
 import {gene_label} from "./genes";
@@ -8,8 +8,7 @@ export const brain_texts: typeof english.brain_texts = {
   hint: "Kreise: Aktivierung; Linien: Gewichte, je größer, desto breiter. Orange, durchgezogen: positiv; blau, " +
     "gestrichelt: negativ. Zeigt der Mauszeiger auf eine Linie oder einen Kreis, erscheinen die Zahlen; mit der " +
     "Tastatur: Pfeiltasten, Eingabe.",
-  network: (inputs, hidden, outputs) =>
-    `Netz: ${inputs} Eingänge, ${hidden} verdeckte Neuronen, ${outputs} Ausgänge`,
+  network: (inputs, hidden, outputs) => `Netz: ${inputs} Eingänge, ${hidden} verdeckte Neuronen, ${outputs} Ausgänge`,
   hidden: (number) => `hidden${number}`,
   bias: "Bias",
   constant: "Bias: die Konstante 1",

@@ -1,11 +1,12 @@
-// Wie eine Generation gezüchtet wurde: Sätze des Glaskastens, das Gesetz der Selektion, und woher Gene stammen.
+// Texts about how a generation was bred: captions of the glass box, the law of the selection, and where the genes of an
+// organism come from.
 import type * as english from "../texts/breeding";
 
 import {fitness_text, localised, three_digits, with_separators} from "./numbers";
 import {choice_labels} from "./registry";
 
-export const counted: typeof english.counted = (count, one, many) => `${with_separators(count)} ${
-  count === 1 ? one : many}`;
+export const counted: typeof english.counted = (count, one, many) =>
+  `${with_separators(count)} ${count === 1 ? one : many}`;
 
 function capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);

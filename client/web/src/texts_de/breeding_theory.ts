@@ -1,4 +1,4 @@
-// Die Theorie der Selektion, die Tipps auf Ziehungen, und warum sich Mittelwerte von Genen geändert haben.
+// Texts about the theory of selection, the bets on picks, and why the means of genes changed.
 import type * as english from "../texts/breeding_theory";
 
 import {three_digits, with_separators, with_sign} from "./numbers";
@@ -27,8 +27,7 @@ export const theory_texts: typeof english.theory_texts = {
   normal_intensity_sentence:
     "Die Selektionsintensität, wenn die Fitness normalverteilt wäre: Sie hinge nur von den Rängen ab.",
   unpicked: "Anteil ohne Ziehung",
-  unpicked_sentence:
-    "Der Anteil der Organismen, die nie gezogen werden; Gene, die nur sie hatten, gehen verloren.",
+  unpicked_sentence: "Der Anteil der Organismen, die nie gezogen werden; Gene, die nur sie hatten, gehen verloren.",
   diversity: "Verlust an Vielfalt",
   diversity_sentence:
     "Der Anteil der Population, den Kopien fitterer Organismen ersetzen, wenn jeder Organismus so viele Kopien hat " +
@@ -64,11 +63,10 @@ export const bet_texts: typeof english.bet_texts = {
 
 export const account_texts: typeof english.account_texts = {
   unnamed_gene: (gene) => `Gen ${gene}`,
-  change: ({name, change, selection, transmission, migration}) =>
-    `Der Mittelwert von ${name} ${
-      change > 0   ? "stieg um " :
-        change < 0 ? "sank um " :
-                     "blieb gleich"}` +
+  change: ({name, change, selection, transmission, migration}) => `Der Mittelwert von ${name} ${
+                                                                    change > 0   ? "stieg um " :
+                                                                      change < 0 ? "sank um " :
+                                                                                   "blieb gleich"}` +
     (change === 0 ? "" : with_sign(Math.abs(change)).slice(1)) +
     `: Selektion ${signed(selection)}, Weitergabe ${signed(transmission)}, Migration ${signed(migration)}.`,
   by_selection: (more) => `Organismen mit ${more ? "mehr" : "weniger"} davon hatten mehr Nachkommen.`,

@@ -1,4 +1,4 @@
-// Die Spalte über den Bereichen: die Welt, was ihre Organismen versuchen, die Zeichen, Mitmachen.
+// What people read in the column above the panels: the world, what its organisms try to do, the marks, taking part.
 import type * as english from "../texts/column";
 
 export const column_texts: typeof english.column_texts = {

@@ -1,4 +1,4 @@
-// Texte, die mehrere Teile der Seite verwenden.
+// Texts that several parts of the page use.
 import type * as english from "../texts/common";
 
 import {with_separators} from "./numbers";

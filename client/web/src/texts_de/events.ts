@@ -1,4 +1,4 @@
-// Der Bereich „Ereignisse“.
+// Texts of the panel "Events".
 import type * as english from "../texts/events";
 
 import {with_separators} from "./numbers";

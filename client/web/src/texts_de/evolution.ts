@@ -1,4 +1,4 @@
-// Die erste Generation neben der Gegenwart.
+// What people read about evolution: generation 1 next to the present.
 import type * as english from "../texts/evolution";
 
 import {fitness_text, significant, with_separators} from "./numbers";

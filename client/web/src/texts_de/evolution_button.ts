@@ -1,4 +1,4 @@
-// Der Knopf, der die erste Generation neben der Gegenwart zeigt.
+// The button that shows generation 1 next to the present.
 import type * as english from "../texts/evolution_button";
 
 export const evolution_button_texts: typeof english.evolution_button_texts = {

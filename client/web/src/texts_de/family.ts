@@ -1,3 +1,4 @@
+// Texts of the panel "Family tree".
 import type * as english from "../texts/family";
 
 import {choice_text, counted} from "./breeding";
@@ -65,8 +66,7 @@ export const family_texts: typeof english.family_texts = {
   unknown: (problem) => `Die Vorfahren sind unbekannt: ${problem}.`,
   not_stored: "Von dieser Generation ist kein Organismus gespeichert.",
 
-  drawing: (generations, organisms) =>
-    `Stammbaum über ${counted(generations, "Generation", "Generationen")} mit ` +
+  drawing: (generations, organisms) => `Stammbaum über ${counted(generations, "Generation", "Generationen")} mit ` +
     `${counted(organisms, "Organismus", "Organismen")}. Pfeiltasten gehen zu Verwandten, die Eingabetaste zeigt den ` +
     "Moment, M markiert einen Organismus zum Vergleich. Die Tabelle darunter enthält dieselben Organismen.",
   loaded: (organisms, bytes) =>
@@ -118,14 +118,14 @@ export const family_texts: typeof english.family_texts = {
   all_descend_from: (count, generation, ancestors, first_parents) =>
     `${first_parents ? "Entlang der ersten Eltern stammen alle" : "Alle"} ${with_separators(count)} Organismen der ` +
     `Generation ${with_separators(generation)}${first_parents ? "" : " stammen"} von ${names(ancestors)} der ` +
-    `Generation ${with_separators(ancestors[0]!.generation)} ab, ${
-      earlier(generation - ancestors[0]!.generation)}: ` +
+    `Generation ${with_separators(ancestors[0]!.generation)} ab, ${earlier(generation - ancestors[0]!.generation)}: ` +
     (ancestors.length === 1 ? "ihrem jüngsten gemeinsamen Vorfahren." : "ihren jüngsten gemeinsamen Vorfahren."),
   all_are_ancestors: (generation) =>
     ` Bis Generation ${with_separators(generation)} ist jeder Organismus des Baums ein Vorfahr aller.`,
   no_ancestor_of_all: (count, generation, since, first_parents) =>
     `Die ${with_separators(count)} Organismen der Generation ${with_separators(generation)} haben ` +
-    `${first_parents ? "entlang der ersten Eltern " : ""}seit Generation ${with_separators(since)} keinen gemeinsamen ` +
+    `${first_parents ? "entlang der ersten Eltern " : ""}seit Generation ${
+      with_separators(since)} keinen gemeinsamen ` +
     "Vorfahren.",
   mark_two: "Zwei Organismen markieren (M, oder Umschalt und Klick), um ihre gemeinsamen Vorfahren zu finden.",
   mark_another: (one) =>

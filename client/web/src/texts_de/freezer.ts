@@ -1,19 +1,19 @@
+// Texts of the panel "Freezer" and of files with chromosomes.
 import type * as english from "../texts/freezer";
 
 import {localised, with_separators} from "./numbers";
 
 const counted = (count: number, one: string, many: string): string =>
   `${with_separators(count)} ${count === 1 ? one : many}`;
-const mebibytes = (bytes: number): string => bytes > 0 && bytes < 52_429 ?
-  "weniger als 0,1" :
-  localised((bytes / (1 << 20)).toFixed(1).replace(/\.0$/, ""));
+const mebibytes = (bytes: number): string =>
+  bytes > 0 && bytes < 52_429 ? "weniger als 0,1" : localised((bytes / (1 << 20)).toFixed(1).replace(/\.0$/, ""));
 const organisms = (count: number): string => counted(count, "Organismus", "Organismen");
 const genes = (count: number): string => counted(count, "Gen", "Gene");
 
 export const freezer_texts: typeof english.freezer_texts = {
   title: "Gefrierfach",
-  about: "Bewahrt Organismen und ganze Populationen in diesem Browser auf, um sie mit anderen zu vergleichen und später " +
-    "Kopien in beliebige Welten einzusetzen.",
+  about: "Bewahrt Organismen und ganze Populationen in diesem Browser auf, um sie mit anderen zu vergleichen und " +
+    "später Kopien in beliebige Welten einzusetzen.",
 
   name: "Name",
   as: "als",
@@ -24,8 +24,8 @@ export const freezer_texts: typeof english.freezer_texts = {
   keep_healthiest: "Gesündester",
   keep_healthiest_help: "Bewahrt die Gene des Organismus auf, der jetzt am gesündesten ist.",
   keep_population: "Population",
-  keep_population_help: "Bewahrt die Gene aller Organismen der gezeigten Generation auf, von allen Inseln, lebend und " +
-    "tot. Die Zeitleiste zeigt frühere Generationen.",
+  keep_population_help: "Bewahrt die Gene aller Organismen der gezeigten Generation auf, von allen Inseln, lebend " +
+    "und tot. Die Zeitleiste zeigt frühere Generationen.",
   open_files: "Dateien öffnen …",
   open_files_help: "Öffnet CSV-Dateien mit Chromosomen. Sie lassen sich auch in diesen Bereich ziehen.",
   no_selection: "Kein Organismus ist ausgewählt: einen auf der Insel anklicken.",
@@ -45,8 +45,8 @@ export const freezer_texts: typeof english.freezer_texts = {
   from_file: (file) => `Datei ${file}`,
   usage: (count, bytes, bytes_max) =>
     `${with_separators(count)} aufbewahrt, ${mebibytes(bytes)} von ${mebibytes(bytes_max)} MiB.`,
-  where: (address) => `Sie liegen nur in diesem Browser und nur für ${address}. Zum Verwenden an anderer Stelle, oder ` +
-    "bevor die Daten des Browsers gelöscht werden, als Dateien herunterladen.",
+  where: (address) => `Sie liegen nur in diesem Browser und nur für ${address}. Zum Verwenden an anderer Stelle, ` +
+    "oder bevor die Daten des Browsers gelöscht werden, als Dateien herunterladen.",
 
   cannot_place: "Dieser Server kann nichts einsetzen; eine neuere Version von evod kann es.",
   replay: "Eine Wiedergabe kann nicht geändert werden; eine Abzweigung davon schon.",
@@ -84,7 +84,8 @@ export const freezer_texts: typeof english.freezer_texts = {
   range_heading: "kleinster…größter",
   nothing_to_compare: "Einen Organismus auf der Insel auswählen, um seine Gene zu vergleichen.",
   other: (organism) => `Organismus ${organism}`,
-  equal: (organism, common) => `Organismus ${organism} hat ${common === 1 ? "dasselbe Gen" : `dieselben ${genes(common)}`}.`,
+  equal: (organism, common) => 
+    `Organismus ${organism} hat ${common === 1 ? "dasselbe Gen" : `dieselben ${genes(common)}`}.`,
   different: (organism, different, common) =>
     `Organismus ${organism} unterscheidet sich in ${with_separators(different)} von ${
       counted(common, "Gen", "Genen")}.`,
@@ -96,7 +97,8 @@ export const freezer_texts: typeof english.freezer_texts = {
     `Zeile ${with_separators(line)}: „${got}“ ist nicht möglich, erlaubt: ${allowed}`,
   not_csv: (line) => `Zeile ${with_separators(line)}: Eine Zelle in Anführungszeichen endet nicht richtig`,
   heading: "eine Kopfzeile mit island, organism und einmal dem Namen jedes Gens, in beliebiger Reihenfolge",
-  row: (gene_count, allowed, got) => `eine Insel, ein Organismus und ${genes(gene_count)}, also ${allowed} Zellen, nicht ${
+  row: (gene_count, allowed, got) => `eine Insel, ein Organismus und ${genes(gene_count)}, also ${allowed} Zellen, ` +
+    `nicht ${
                               got}` +
     (got > allowed ? "; bei Dezimalkommas müssen Semikolons oder Tabulatoren die Zellen trennen" : ""),
   cell: (column, choices) =>
@@ -114,7 +116,8 @@ export const freezer_texts: typeof english.freezer_texts = {
   browser_full: "Dieser Browser hat keinen Platz mehr für diese Seite: Wichtiges als Dateien herunterladen und dann " +
     "hier löschen.",
   too_many: (most) =>
-    `Das Gefrierfach ist voll: Es hat ${with_separators(most)} Einträge, mehr sind nicht erlaubt. Zuerst einige löschen.`,
+    `Das Gefrierfach ist voll: Es hat ${with_separators(most)} Einträge, mehr sind nicht erlaubt. ` +
+    "Zuerst einige löschen.",
   full: (bytes, free, most) =>
     `Das Gefrierfach ist voll: Die Gene brauchen ${mebibytes(bytes)} MiB, frei sind ${mebibytes(free)} von ${
       mebibytes(most)} MiB. Zuerst einige Einträge herunterladen und löschen.`,

@@ -1,4 +1,4 @@
-// Namen und Werte von Genen.
+// genes: names and values of genes for readers.
 import type * as english from "../texts/genes";
 
 import {localised, tenths} from "./numbers";

@@ -1,3 +1,4 @@
+// Texts of the panel "Glass box": its controls and drawings. What it says about a breeding is in breeding.ts.
 import type * as english from "../texts/glass_box";
 
 import {counted} from "./breeding";
@@ -17,7 +18,8 @@ export const glass_box_texts: typeof english.glass_box_texts = {
   problem: (problem) => `${problem}.`,
   retry: "Noch einmal",
   no_snapshot: "Warten auf die erste Momentaufnahme …",
-  nothing_bred: "Noch hat sich keine Generation fortgepflanzt. Die erste tut es, wenn sie endet und die nächste beginnt.",
+  nothing_bred:
+    "Noch hat sich keine Generation fortgepflanzt. Die erste tut es, wenn sie endet und die nächste beginnt.",
   loading: "Wird geladen …",
 
   generation: "Generation",
@@ -29,8 +31,7 @@ export const glass_box_texts: typeof english.glass_box_texts = {
   play_each: "jede abspielen",
   play_each_help: "Spielt jede Züchtung von Anfang an ab, sobald sie erscheint; mit Tipps nach den Tipps.",
   hold: "Welt anhalten",
-  hold_help:
-    "Hält, solange dieser Bereich offen ist, die Welt nach jeder Generation an, einen Tick in der nächsten. " +
+  hold_help: "Hält, solange dieser Bereich offen ist, die Welt nach jeder Generation an, einen Tick in der nächsten. " +
     "Fortsetzen lässt eine weitere Generation laufen.",
   birth: "Geburt des ausgewählten Organismus",
   tabs: {step: "Schritt", theory: "Theorie", genes: "Warum sich Gene ändern"},
@@ -54,7 +55,8 @@ export const glass_box_texts: typeof english.glass_box_texts = {
     "abspielen",
   play_picks: (picks, closes_bets) =>
     `${closes_bets ? "Tipps abgeben und " : ""}${counted(picks, "Ziehung", "Ziehungen")} abspielen`,
-  migrant: (organism, from, island) => `Organismus ${organism} ist eine Kopie von Organismus ${from} der Insel ${island}`,
+  migrant: (organism, from, island) =>
+    `Organismus ${organism} ist eine Kopie von Organismus ${from} der Insel ${island}`,
   migrants: (shown, count) =>
     `${counted(count, "Organismus ist", "Organismen sind")} vor der Selektion auf diese Insel eingewandert: ${
       shown.join("; ")}` +
@@ -76,8 +78,8 @@ export const glass_box_texts: typeof english.glass_box_texts = {
   too_many: (rows_max) =>
     `Die Theorie braucht alle Organismen; angefordert werden nur die ersten ${with_separators(rows_max)}.`,
   received: (received, all) => `${with_separators(received)} von ${with_separators(all)} Organismen empfangen …`,
-  deviating: (count, ranks) => `${with_separators(count)} von ${
-    with_separators(ranks)} Rängen weichen um mehr als zwei Standardfehler ab`,
+  deviating: (count, ranks) =>
+    `${with_separators(count)} von ${with_separators(ranks)} Rängen weichen um mehr als zwei Standardfehler ab`,
   after_picks: (made, all) => `Nach ${with_separators(made)} von ${
     counted(all, "Ziehung", "Ziehungen")}. Die Abweichungen erscheinen nach der letzten Ziehung.`,
   value: (value, unit) =>
@@ -97,8 +99,7 @@ export const glass_box_texts: typeof english.glass_box_texts = {
   account_later: (generation) =>
     `Die Rechnung erscheint, wenn Generation ${with_separators(generation)} zu Ende ist, falls der Server ihre ` +
     "Statistik dann noch hat.",
-  account: (generation) =>
-    `Warum sich der Mittelwert jedes Gens von Generation ${with_separators(generation)} zu ` +
+  account: (generation) => `Warum sich der Mittelwert jedes Gens von Generation ${with_separators(generation)} zu ` +
     `${with_separators(generation + 1)} geändert hat, nach der Price-Gleichung: Die Änderung ist Selektion (welche ` +
     "Organismen Nachkommen hatten) + Weitergabe (Rekombination und Mutation) + Migration.",
   account_limited: (shown, all) =>

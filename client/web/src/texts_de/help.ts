@@ -1,3 +1,4 @@
+// The help of the keys and gestures. panels.js contains it.
 import type * as english from "../texts/help";
 
 export const key_help: typeof english.key_help = {

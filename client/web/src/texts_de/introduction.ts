@@ -1,8 +1,8 @@
-// Die Einführung: drei Schritte für alle, die die Seite zum ersten Mal sehen.
+// The introduction: three steps for people who see the page for the first time.
 import shared from "../../../../proto/texts/de/viewers.json";
 import type * as english from "../texts/introduction";
 
-export type {IntroductionStep} from "../texts/introduction";
+export type{IntroductionStep} from "../texts/introduction";
 
 const can_do = {
   title: "Was möglich ist",
@@ -18,7 +18,8 @@ export const introduction_steps: typeof english.introduction_steps = [
   },
   {
     title: "Was sie wollen",
-    text: "Sie suchen Futter und meiden Gift. Wer das gut kann, hat mehr Kinder. Die Übersicht nennt die gesündesten; " +
+    text:
+      "Sie suchen Futter und meiden Gift. Wer das gut kann, hat mehr Kinder. Die Übersicht nennt die gesündesten; " +
       "ihre Kurve ist die Fitness jeder Generation.",
   },
   {title: can_do.title, text: can_do.with_bodies},
@@ -27,7 +28,8 @@ export const introduction_steps: typeof english.introduction_steps = [
 export const introduction_steps_without_bodies: typeof english.introduction_steps_without_bodies = [
   {
     title: "Was zu sehen ist",
-    text: "Eine Population, die Generation für Generation gezüchtet wird. Jede Linie ist ein Organismus: Sie schneidet " +
+    text:
+      "Eine Population, die Generation für Generation gezüchtet wird. Jede Linie ist ein Organismus: Sie schneidet " +
       "die Achse jedes Gens beim Wert des Gens.",
   },
   {

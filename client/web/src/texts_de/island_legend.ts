@@ -1,3 +1,4 @@
+// The legend of the colours of the organisms in the corner of the island.
 import type * as english from "../texts/island_legend";
 
 import {gene_label} from "./genes";

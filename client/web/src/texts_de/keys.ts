@@ -1,3 +1,4 @@
+// What keys answer.
 import type * as english from "../texts/keys";
 
 export const key_texts: typeof english.key_texts = {

@@ -1,4 +1,4 @@
-// The language of the texts in this folder: German.
+// The language of the texts in this folder.
 import type * as english from "../texts/language";
 
 export const language: typeof english.language = {

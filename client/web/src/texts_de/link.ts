@@ -1,3 +1,4 @@
+// What is wrong with a link to a moment.
 import type * as english from "../texts/link";
 
 import {with_separators} from "./numbers";

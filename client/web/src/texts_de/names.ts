@@ -1,10 +1,13 @@
+// Texts about names that users choose, and about worlds whose organisms have other genes.
 import type * as english from "../texts/names";
 
 import {gene_label} from "./genes";
 import {with_separators} from "./numbers";
 
 const genes = (count: number): string => `${with_separators(count)} ${count === 1 ? "Gen" : "Gene"}`;
-const fields: {readonly [field: string]: string|undefined} = {name: "Name"};
+const fields: {readonly [field: string]: string|undefined} = {
+  name: "Name"
+};
 
 export const name_texts: typeof english.name_texts = {
   wrong: (field, name, characters_max) => `${fields[field] ?? field}: „${name}“ ist nicht möglich, erlaubt sind 1 bis ${

@@ -1,3 +1,4 @@
+// Texts of the dialog "New world".
 import type * as english from "../texts/new_world";
 
 import {with_separators} from "./numbers";
@@ -10,7 +11,8 @@ export const new_world_texts: typeof english.new_world_texts = {
   name: "Name",
   seed: "Startwert",
   seed_hint: "leer: zufällig gewählt",
-  seed_help: "Der Startwert bestimmt alles Zufällige. Zwei Welten mit gleichem Startwert und gleichen Parametern sind " +
+  seed_help:
+    "Der Startwert bestimmt alles Zufällige. Zwei Welten mit gleichem Startwert und gleichen Parametern sind " +
     "gleich.",
   population: "erste Population",
   from_seed: "aus dem Startwert",

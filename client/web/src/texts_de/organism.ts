@@ -1,3 +1,4 @@
+// organism: the panel "Organism".
 import type * as english from "../texts/organism";
 
 import {gene_label, gene_number} from "./genes";
@@ -36,7 +37,8 @@ export const organism_texts: typeof english.organism_texts = {
   why: "Warum es ihn gibt",
   placed: (tick) => `Keine Eltern: von Hand eingesetzt nach Tick ${with_separators(tick)} der Generation`,
   founder: "Keine Eltern: Gründer der Generation 1, oder aus einer Datei",
-  one_parent: (parent, generation, why) => `Ein Elternteil: ${parent} (Generation ${with_separators(generation)})${why}`,
+  one_parent: (parent, generation, why) =>
+    `Ein Elternteil: ${parent} (Generation ${with_separators(generation)})${why}`,
   of_elite: ": Dieser Organismus gehört zur Elite",
   of_survivors: ": Dieser Organismus hat überlebt",
   both_parents: ", zugleich beide Eltern",

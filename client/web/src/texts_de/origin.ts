@@ -1,3 +1,4 @@
+// What people read about the generations before a fork.
 import type * as english from "../texts/origin";
 
 import {with_separators} from "./numbers";

@@ -1,8 +1,9 @@
+// What people read in and above an island: its name, hints, tiles of all islands, the views of two worlds.
 import type * as english from "../texts/pane";
 
 import {fitness_text, tenths, with_separators} from "./numbers";
 
-export type {LabelWidth, ToolButton} from "../texts/pane";
+export type{LabelWidth, ToolButton} from "../texts/pane";
 
 function alive_organisms(count: number): string {
   return count === 1 ? "1 Organismus lebt" : `${with_separators(count)} Organismen leben`;
@@ -14,8 +15,8 @@ export const pane_texts: typeof english.pane_texts = {
   no_webgl: "Dieser Browser kann die Insel nicht zeichnen, weil WebGL 2 fehlt oder ausgeschaltet ist. Die Bereiche " +
     "zeigen die Welt wie gewohnt.",
   no_world: "Keine Welt wird gezeigt",
-  island: (island, world, alive) => `Insel ${island} der Welt ${world}${
-    alive}. Pfeiltasten bewegen die Ansicht, 0 zeigt die ganze Insel.`,
+  island: (island, world, alive) =>
+    `Insel ${island} der Welt ${world}${alive}. Pfeiltasten bewegen die Ansicht, 0 zeigt die ganze Insel.`,
   alive: (generation, alive) => `, Generation ${with_separators(generation)}, ${alive_organisms(alive)}`,
   start: "▶ Starten",
   start_help: "Macht mit und startet diese Welt.",
@@ -81,11 +82,7 @@ export const tool_buttons: typeof english.tool_buttons = [
     label: "Futter",
     help: "Ein Klick auf die Insel setzt Futter ein. Gefressen erscheint es nicht wieder."
   },
-  {
-    tool: "poison",
-    label: "Gift",
-    help: "Ein Klick auf die Insel setzt Gift ein. Gefressen erscheint es nicht wieder."
-  },
+  {tool: "poison", label: "Gift", help: "Ein Klick auf die Insel setzt Gift ein. Gefressen erscheint es nicht wieder."},
   {
     tool: "organism",
     label: "Organ.",

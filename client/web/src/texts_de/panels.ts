@@ -1,3 +1,4 @@
+// Texts about the panels themselves: the titles of those that are loaded later, and why one is not shown yet.
 import type * as english from "../texts/panels";
 
 export const panels_texts: typeof english.panels_texts = {

@@ -1,3 +1,4 @@
+// Values and groups of parameters in words, and why a change was refused.
 import type * as english from "../texts/parameter_words";
 
 import {rounded, with_separators} from "./numbers";

@@ -1,3 +1,4 @@
+// Texts of the panel "Parameters".
 import type * as english from "../texts/parameters";
 
 import {capitalised, with_separators} from "./numbers";

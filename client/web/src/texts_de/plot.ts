@@ -1,3 +1,4 @@
+// plot: what a plot says itself, whatever it shows, and the fitness curve of the column.
 import type * as english from "../texts/plot";
 
 import {shown_number, with_separators} from "./numbers";

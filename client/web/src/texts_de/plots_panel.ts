@@ -1,3 +1,4 @@
+// plots_panel: the panel "Plots" and its plots over generations.
 import type * as english from "../texts/plots_panel";
 
 import {gene_label} from "./genes";
@@ -17,8 +18,7 @@ export const figure_texts: typeof english.figure_texts = {
   generation: "Generation",
   series_of: (series, history) => `${series}, ${history}`,
   deviation: "± 1 Standardabweichung",
-  fitness:
-    {title: "Fitness", y: "Fitness", best: "beste", mean: "Mittelwert", median: "Median", worst: "schlechteste"},
+  fitness: {title: "Fitness", y: "Fitness", best: "beste", mean: "Mittelwert", median: "Median", worst: "schlechteste"},
   genes: {
     title: "Mittelwerte der Gene",
     of_one: (gene) => `Gen ${gene_label(gene)}`,
@@ -38,19 +38,11 @@ export const figure_texts: typeof english.figure_texts = {
     transmission: "Weitergabe",
     migration: "Migration"
   },
-  diversity: {
-    title: "Vielfalt",
-    y: "mittlere Standardabweichung, als Anteil am Bereich des Gens",
-    diversity: "Vielfalt"
-  },
+  diversity:
+    {title: "Vielfalt", y: "mittlere Standardabweichung, als Anteil am Bereich des Gens", diversity: "Vielfalt"},
   survivors: {title: "Am Ende am Leben", y: "Organismen", alive: "am Ende am Leben", born: "geboren"},
-  deaths: {
-    title: "Todesursachen",
-    y: "Organismen",
-    starved: "verhungert",
-    poisoned: "vergiftet",
-    alive: "am Ende am Leben"
-  },
+  deaths:
+    {title: "Todesursachen", y: "Organismen", starved: "verhungert", poisoned: "vergiftet", alive: "am Ende am Leben"},
   food: {title: "Gefressenes Futter und Gift", y: "Stück pro Generation", food: "Futter", poison: "Gift"},
   values: {title: (gene) => `Werte von ${gene_label(gene)}`, y: "Organismen", organisms: "Organismen", none: "…"},
   all_died: (generation) => `Generation ${generation}: Alle Organismen starben vor ihrem Ende`,
@@ -80,7 +72,8 @@ export const plots_panel_texts: typeof english.plots_panel_texts = {
   loading: "…",
   selection_of_all: "Price-Gleichung: wie stark die Selektion den Mittelwert jedes Gens geändert hat. Über 0 hatten " +
     "Organismen mit mehr davon mehr Nachkommen.",
-  selection_of_one: "Price-Gleichung: Die Änderung des Mittelwerts ist Selektion (welche Organismen Nachkommen hatten) " +
+  selection_of_one:
+    "Price-Gleichung: Die Änderung des Mittelwerts ist Selektion (welche Organismen Nachkommen hatten) " +
     "+ Weitergabe (Rekombination und Mutation) + Migration.",
 
   compare: "vergleichen mit",

@@ -1,3 +1,4 @@
+// Texts of the drawing of a population without bodies.
 import type * as english from "../texts/population";
 
 import {fitness_text, with_separators} from "./numbers";
@@ -5,9 +6,8 @@ import {fitness_text, with_separators} from "./numbers";
 export const population_texts: typeof english.population_texts = {
   name: "Population",
   loading: "Population wird geladen …",
-  shown: (drawn, read, all) => drawn === all ?
-    `Jede Linie ist einer von ${with_separators(all)} Organismen.` :
-    `${with_separators(drawn)} Linien: eine Stichprobe ` +
+  shown: (drawn, read, all) => drawn === all ? `Jede Linie ist einer von ${with_separators(all)} Organismen.` :
+                                               `${with_separators(drawn)} Linien: eine Stichprobe ` +
       (read === all ? `der ${with_separators(all)} Organismen.` :
                       `der ersten ${with_separators(read)} von ${with_separators(all)} Organismen.`),
   best: (organism, fitness) => `Bester: Organismus ${organism}, Fitness ${fitness_text(fitness)}`,

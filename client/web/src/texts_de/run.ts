@@ -1,3 +1,4 @@
+// Texts of the panel "Run".
 import type * as english from "../texts/run";
 
 import {with_separators} from "./numbers";
@@ -20,9 +21,8 @@ export const run_texts: typeof english.run_texts = {
   state: (world, state) => `${world}: ${state}`,
   waits: (rated, islands) => `Ein Programm muss die Fitness senden; ${with_separators(rated)} von ${
     with_separators(islands)} ${islands === 1 ? "Insel" : "Inseln"} bewertet`,
-  where: (generation, tick, seed) =>
-    `${generation === null ? "" : `Generation ${with_separators(generation)}, `}Tick ${
-      with_separators(tick)}, Startwert ${seed}`,
+  where: (generation, tick, seed) => `${generation === null ? "" : `Generation ${with_separators(generation)}, `}Tick ${
+    with_separators(tick)}, Startwert ${seed}`,
   reset_title: "Zurücksetzen",
   reset_about: "Beginnt einen neuen Lauf bei Generation 1 mit den jetzigen Werten der Parameter.",
   seed: "Startwert",

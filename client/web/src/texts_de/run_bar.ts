@@ -1,3 +1,4 @@
+// The run controls: run and pause, one generation, replay, fork, speed.
 import type * as english from "../texts/run_bar";
 
 export const run_bar_texts: typeof english.run_bar_texts = {
@@ -6,7 +7,8 @@ export const run_bar_texts: typeof english.run_bar_texts = {
   resume: "Fortsetzen",
   run_help: "Startet die Welt oder hält sie an (Leertaste).",
   generation: "Eine Generation",
-  generation_help: "Lässt die Generation bis zu ihrem Ende laufen und wartet dann. Der nächste Tick züchtet die nächste.",
+  generation_help:
+    "Lässt die Generation bis zu ihrem Ende laufen und wartet dann. Der nächste Tick züchtet die nächste.",
   replay: "Wiedergabe",
   replay_help: "Zeigt frühere Generationen dieses Laufs, mit einer Zeitleiste (P).",
   live: "Live",

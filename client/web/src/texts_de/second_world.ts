@@ -1,3 +1,4 @@
+// What people read when they choose a second world.
 import type * as english from "../texts/second_world";
 
 import {with_separators} from "./numbers";

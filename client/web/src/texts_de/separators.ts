@@ -1,4 +1,4 @@
-// The separators in German numbers.
+// The separators in numbers.
 import type * as english from "../texts/separators";
 
 export const separators: typeof english.separators = {

@@ -1,3 +1,4 @@
+// What a snapshot says about a world and an island.
 import type * as english from "../texts/snapshot";
 
 import {duration, tenths, with_separators} from "./numbers";

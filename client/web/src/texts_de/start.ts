@@ -1,3 +1,4 @@
+// What people read before a world can be shown, and about a link whose world is not there.
 import type * as english from "../texts/start";
 
 export const start_texts: typeof english.start_texts = {
@@ -5,7 +6,8 @@ export const start_texts: typeof english.start_texts = {
   connecting: "Verbindung zum Server wird aufgebaut …",
   token: "Token",
   connect: "Verbinden",
-  token_help: "Tokens erzeugt, wer den Server verwaltet, mit evod token add. Die Seite merkt sich das Token, bis dieser " +
+  token_help:
+    "Tokens erzeugt, wer den Server verwaltet, mit evod token add. Die Seite merkt sich das Token, bis dieser " +
     "Tab geschlossen wird. Das Feld bleibt leer, wenn der Server kein Token braucht.",
   try_again: "Noch einmal",
   token_required: "Der Server verlangt ein Token.",

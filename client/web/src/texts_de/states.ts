@@ -1,3 +1,4 @@
+// States of worlds and runs as words.
 import texts from "../../../../proto/texts/de/events.json";
 import type * as english from "../texts/states";
 

@@ -1,3 +1,4 @@
+// What people read about the past of a world: the time line, its buttons, links to moments.
 import type * as english from "../texts/timeline";
 
 import {with_separators} from "./numbers";
@@ -27,8 +28,7 @@ export const timeline_texts: typeof english.timeline_texts = {
     fork: "Abzweigung"
   },
   several: (label, further) => `${label} +${further}`,
-  zoomed: (first, last) =>
-    `die Leiste zeigt die Generationen ${with_separators(first)} bis ${with_separators(last)}`,
+  zoomed: (first, last) => `die Leiste zeigt die Generationen ${with_separators(first)} bis ${with_separators(last)}`,
   zoom: "Zoom der Zeitleiste",
   further_marks: (count) => `und ${count} weitere`,
 };
@@ -41,7 +41,8 @@ export const timeline_buttons: typeof english.timeline_buttons = {
   next: {label: ">", name: "Nächste Generation", help: "Geht zur nächsten Generation (])."},
   last: {label: ">|", name: "Letzter Tick", help: "Geht zum letzten Tick."},
   live: {label: "Live", help: "Kehrt zur laufenden Welt zurück (P)."},
-  zoom_in: {label: "+", name: "Vergrößern", help: "Zeigt weniger Generationen auf der Leiste (Mausrad, + auf der Leiste)."},
+  zoom_in:
+    {label: "+", name: "Vergrößern", help: "Zeigt weniger Generationen auf der Leiste (Mausrad, + auf der Leiste)."},
   zoom_out:
     {label: "−", name: "Verkleinern", help: "Zeigt mehr Generationen auf der Leiste (Mausrad, − auf der Leiste)."},
   show_all: {label: "Alle", name: "Alle Generationen zeigen", help: "Zeigt den ganzen Lauf auf der Leiste (0)."},
@@ -51,6 +52,6 @@ export const timeline_buttons: typeof english.timeline_buttons = {
 
 export const generation_field_texts: typeof english.generation_field_texts = {
   label: "Generation",
-  help: (first, last) => `Eine Generation von ${with_separators(first)} bis ${
-    with_separators(last)} eingeben; die Eingabetaste zeigt sie.`,
+  help: (first, last) =>
+    `Eine Generation von ${with_separators(first)} bis ${with_separators(last)} eingeben; die Eingabetaste zeigt sie.`,
 };

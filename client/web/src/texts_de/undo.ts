@@ -1,3 +1,4 @@
+// What people read about undoing and redoing.
 import type * as english from "../texts/undo";
 
 import {capitalised, with_separators} from "./numbers";

@@ -1,3 +1,4 @@
+// Who changed something, and who uses this page.
 import type * as english from "../texts/users";
 
 export const actor_text: typeof english.actor_text = (by) => {
@@ -19,8 +20,8 @@ export const actor_text: typeof english.actor_text = (by) => {
 
 const roles: {readonly [role: string]: string|undefined} = {
   ROLE_VIEWER: "Zuschauer",
-  ROLE_OPERATOR: "Bediener",
-  ROLE_ADMIN: "Verwalter"
+  ROLE_CONTROLLER: "Steuerung",
+  ROLE_ADMIN: "Verwaltung"
 };
 
 export const session_text: typeof english.session_text = (welcome) => {

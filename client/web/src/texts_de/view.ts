@@ -1,3 +1,4 @@
+// Texts of the panel "View".
 import type * as english from "../texts/view";
 
 export const view_texts: typeof english.view_texts = {

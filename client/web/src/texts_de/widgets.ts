@@ -1,3 +1,4 @@
+// Texts of widgets.
 import type * as english from "../texts/widgets";
 
 export const widget_texts: typeof english.widget_texts = {

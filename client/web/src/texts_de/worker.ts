@@ -1,3 +1,4 @@
+// What the worker says about its connection: each begins a sentence, which the page completes.
 import type * as english from "../texts/worker";
 
 export const worker_texts: typeof english.worker_texts = {

@@ -1,3 +1,4 @@
+// Texts of the panel "Worlds".
 import type * as english from "../texts/worlds";
 
 import {with_separators} from "./numbers";
@@ -17,8 +18,8 @@ export const worlds_texts: typeof english.worlds_texts = {
   ask_remove: (world) => `Welt ${world} löschen? Sie endet für alle.`,
   file_stays: "Speichert der Server Läufe, bleibt die Laufdatei in ihrem Ordner.",
   do_remove: "Welt löschen",
-  fork_from: (world, generation, tick) => `Eine Kopie von ${world} bei Generation ${with_separators(generation)}, Tick ${
-    with_separators(tick)}. Sie wartet, bis sie gestartet wird.`,
+  fork_from: (world, generation, tick) => `Eine Kopie von ${world} bei Generation ${
+    with_separators(generation)}, Tick ${with_separators(tick)}. Sie wartet, bis sie gestartet wird.`,
   fork_name: "Name der Abzweigung",
   do_fork: "Abzweigen",
   islands: (world) => `Inseln von ${world}`,

@@ -1,8 +1,9 @@
 // event_text: events as sentences, and which of them a user should notice at once.
 //
 // proto/texts/events.json contains the templates, and server/protocol/event_text.h describes them. This file fills them
-// in as the server does; German templates have further rules. proto/vectors/events.json contains examples, which the tests of both compare. The page fills
-// in the events itself, because it creates events_dropped itself, too.
+// in as the server does; proto/vectors/events.json contains examples, which the tests of both compare. The templates of
+// other languages are in folders next to events.json, and also have the rules parameter, choice and allowed. The page
+// fills in the events itself, because it creates events_dropped itself, too.
 import texts from "../../../../proto/texts/events.json";
 import {capitalised, localised, plain_fitness, with_separators} from "../texts/numbers";
 import {allowed_words, choice_labels, parameter_labels} from "../texts/registry";
