@@ -1,6 +1,11 @@
 // genes: names and values of genes for readers.
 import {localised, tenths} from "./numbers";
 
+/** As the server names the gene: "normal_speed". */
+export function gene_name(name: string): string {
+  return name;
+}
+
 /** "normal_speed" → "normal speed". */
 export function gene_label(name: string): string {
   return name.replace(/_/g, " ");

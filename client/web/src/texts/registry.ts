@@ -3,6 +3,7 @@ interface Words {
   readonly [name: string]: string|undefined;
 }
 
+/** By topic: "food_and_poison". */
 export const topic_titles: Words = {};
 export const parameter_labels: Words = {};
 export const parameter_helps: Words = {};

@@ -5,7 +5,7 @@ type Switch = "trails"|"flashes"|"density"|"minimap"|"interpolate";
 
 export const view_texts = {
   language: "language (Sprache)",
-  languages: {"": "as the browser (wie der Browser)", en: "English", de: "Deutsch"},
+  languages: {"": "automatic (automatisch)", en: "English", de: "Deutsch"},
   skin: "skin",
   skins: {vivid: "vivid", classic: "classic"} as {readonly[skin in Look["skin"]]: string},
   background: "background",

@@ -4,8 +4,8 @@ import type * as english from "../texts/app";
 export const app_texts: typeof english.app_texts = {
   title: (world) => world === "" ? "evod" : `${world} – evod`,
   about: (has_items) => "Evolution, live: " +
-    (has_items ? "Organismen müssen Futter finden und Gift meiden; die fittesten zeugen die nächste Generation." :
-                 "Die fittesten Organismen jeder Generation zeugen die nächste."),
+    (has_items ? "Organismen suchen Futter und meiden Gift; die fittesten haben mehr Kinder." :
+                 "Die fittesten Organismen jeder Generation haben mehr Kinder."),
   no_world: "Der Server hat noch keine Welt.",
   new_world: "Neue Welt …",
   skip: "Zur Welt springen",

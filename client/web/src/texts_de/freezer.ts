@@ -17,9 +17,9 @@ export const freezer_texts: typeof english.freezer_texts = {
 
   name: "Name",
   as: "als",
-  name_hint: "leer: Welt und Generation",
-  keep: "Aufbewahren",
-  keep_selected: "Ausgewählter",
+  name_hint: "leer: Welt, Generation",
+  keep: "Behalten",
+  keep_selected: "Auswahl",
   keep_selected_help: "Bewahrt die Gene des ausgewählten Organismus auf.",
   keep_healthiest: "Gesündester",
   keep_healthiest_help: "Bewahrt die Gene des Organismus auf, der jetzt am gesündesten ist.",

@@ -12,6 +12,8 @@ const names: {readonly [gene: string]: string|undefined} = {
   poison_radius: "Giftradius",
 };
 
+export const gene_name: typeof english.gene_name = (name) => names[name] ?? name;
+
 export const gene_label: typeof english.gene_label = (name) => names[name] ?? name.replace(/_/g, " ");
 
 export const gene_number: typeof english.gene_number = (value) =>

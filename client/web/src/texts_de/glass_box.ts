@@ -123,7 +123,7 @@ export const glass_box_texts: typeof english.glass_box_texts = {
   picks_in_order: (pick, count) => `Ziehungen der Reihe nach: ${pick + 1} von ${count}`,
   one_pick: (pick) => `Ziehung ${pick + 1}`,
   copies_label: "Ziehungen nach Rang, beobachtet und erwartet; die Tabelle darunter enthält die Zahlen",
-  copies_title: "Ziehungen nach Rang; Linie: erwartet ± Standardfehler",
+  copies_title: "Ziehungen nach Rang; Linie: erwartet ± Fehler",
   deviation_title: "Abweichung in Standardfehlern",
   plus_two: "+2",
   minus_two: "−2",

@@ -1,6 +1,15 @@
 // The help of the keys and gestures. panels.js contains it.
 import type * as english from "../texts/help";
 
+export const key_names: typeof english.key_names = {
+  "Space": "Leertaste",
+  "Shift+.": "⇧ .",
+  "Page Down": "Bild ab",
+  "Page Up": "Bild auf",
+  "Home": "Pos1",
+  "Shift+Z": "⇧ Z",
+};
+
 export const key_help: typeof english.key_help = {
   pause: "starten, anhalten, fortsetzen",
   tick: "ein Tick, dann anhalten",
@@ -36,7 +45,7 @@ export const key_help: typeof english.key_help = {
 export const gesture_help: typeof english.gesture_help = [
   ["Strg+C", "Link zu diesem Moment kopieren"],
   ["Strg+Z", "letzte eigene Änderung von Parametern oder zuletzt Eingesetztes rückgängig machen"],
-  ["Strg+Umschalt+Z   Strg+Y", "Rückgängiges wiederholen"],
+  ["Strg+⇧+Z   Strg+Y", "Rückgängiges wiederholen"],
   ["Mausrad   zwei Finger", "beim Mauszeiger zoomen"],
   ["Ziehen", "Ansicht bewegen"],
   ["Klicken   Tippen", "einen Organismus auswählen; ins Leere: keinen auswählen; oder das gewählte Werkzeug benutzen"],

@@ -6,6 +6,26 @@ import {with_separators} from "./numbers";
 export const new_world_texts: typeof english.new_world_texts = {
   title: "Neue Welt",
   experiments: "Experiment",
+  descriptions: {
+    default:
+      "Die Standardwelt: 50 Organismen, 25 Stück Futter, 40 Stück Gift. Alle Parameter haben ihre Standardwerte.",
+    annealing: "Die Mutation nimmt mit den Generationen ab: erst große Schritte, später kleine zum Feinabstimmen.",
+    brains:
+      "Neuronale Netze lernen durch Evolution, Futter zu fressen und Gift zu meiden; sie nehmen Richtung und Nähe " +
+      "wahr. Starke Dämpfung wie in Wasser lässt Organismen dorthin gehen, wohin sie sich drehen.",
+    classic:
+      "Die ursprünglichen Regeln der Dissertation: Organismen umkreisen ihr Futter und fliehen immer. Die Population " +
+      "ist klein, und Überlebende mutieren. Der Zufall überwiegt hier die Selektion.",
+    islands:
+      "Acht Inseln in einem Ring: Alle zehn Generationen schickt jede Insel eine Kopie ihres besten Organismus zur " +
+      "nächsten.",
+    rooy:
+      "Netze mit einem Eingang steuern auf Futter zu, wie in N. Rooys „Evolving Simple Organisms“ (2017), hier mit " +
+      "Wänden fern vom Futter; der nächste Organismus erhält das Stück.",
+    trade_offs:
+      "Jedes Gen hat Kosten: Mehr Tempo, Kraft, Gesundheit und Wahrnehmung kosten mehr Gesundheit pro Sekunde, " +
+      "und ein kleiner Körper begrenzt die Gesundheit. Die besten Werte der Gene liegen daher innerhalb ihrer Grenzen.",
+  },
   same: (world) => `wie ${world}`,
   same_help: "Die Parameter und der Zeitplan, die diese Welt jetzt hat.",
   name: "Name",

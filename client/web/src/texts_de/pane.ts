@@ -85,13 +85,13 @@ export const tool_buttons: typeof english.tool_buttons = [
   {tool: "poison", label: "Gift", help: "Ein Klick auf die Insel setzt Gift ein. Gefressen erscheint es nicht wieder."},
   {
     tool: "organism",
-    label: "Organ.",
-    help: "Organismus: Ein Klick auf die Insel setzt eine Kopie des ausgewählten Organismus ein."
+    label: "Organismus",
+    help: "Ein Klick auf die Insel setzt eine Kopie des ausgewählten Organismus ein."
   },
   {
     tool: "remove",
-    label: "Entf.",
-    help: "Entfernen: Ein Klick auf die Insel nimmt den Organismus, das Futter oder das Gift dort weg, bis die " +
+    label: "Entfernen",
+    help: "Ein Klick auf die Insel nimmt den Organismus, das Futter oder das Gift dort weg, bis die " +
       "Generation endet."
   },
 ];

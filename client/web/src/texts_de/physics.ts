@@ -17,7 +17,7 @@ export const physics_texts: typeof english.physics_texts = {
   touching: "Paare von Körpern, die sich berühren",
   overlap: "tiefste Überlappung",
   fastest: "schnellster Körper",
-  movement: "Weg des schnellsten Körpers in einem Tick",
+  movement: "Weg des schnellsten je Tick",
   px: "px",
   px_s: "px/s",
   radii: "seines Radius",

@@ -4,22 +4,22 @@ import type * as english from "../texts/registry";
 import {localised} from "./numbers";
 
 export const topic_titles: typeof english.topic_titles = {
-  "Experiment": "Experiment",
-  "Islands": "Inseln",
-  "Food and poison": "Futter und Gift",
-  "Obstacles and crates": "Hindernisse und Kisten",
-  "Items": "Futter- und Giftstücke",
-  "Health and behaviour": "Gesundheit und Verhalten",
-  "Physics": "Physik",
-  "From genes to bodies": "Von Genen zu Körpern",
-  "Costs of genes": "Kosten der Gene",
-  "Population": "Population",
-  "Selection": "Selektion",
-  "Crossover": "Rekombination (Crossover)",
-  "Mutation": "Mutation",
-  "Bounds of genes": "Grenzen der Gene",
-  "End of the run": "Ende des Laufs",
-  "Migration": "Migration",
+  experiment: "Experiment",
+  islands: "Inseln",
+  food_and_poison: "Futter und Gift",
+  obstacles_and_crates: "Hindernisse und Kisten",
+  items: "Futter- und Giftstücke",
+  health_and_behaviour: "Gesundheit und Verhalten",
+  physics: "Physik",
+  from_genes_to_bodies: "Von Genen zu Körpern",
+  costs_of_genes: "Kosten der Gene",
+  population: "Population",
+  selection: "Selektion",
+  crossover: "Rekombination (Crossover)",
+  mutation: "Mutation",
+  bounds_of_genes: "Grenzen der Gene",
+  end_of_the_run: "Ende des Laufs",
+  migration: "Migration",
 };
 
 export const parameter_labels: typeof english.parameter_labels = {

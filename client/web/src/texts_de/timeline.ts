@@ -36,8 +36,8 @@ export const timeline_texts: typeof english.timeline_texts = {
 export const timeline_buttons: typeof english.timeline_buttons = {
   first: {label: "|<", name: "Erster Tick", help: "Geht zum ersten Tick."},
   previous: {label: "<", name: "Vorige Generation", help: "Geht zur vorigen Generation ([)."},
-  play: {label: "Abspielen", help: "Spielt die Wiedergabe ab oder hält sie an (Leertaste)."},
-  pause: {label: "Anhalten"},
+  play: {label: "Start", help: "Spielt die Wiedergabe ab oder hält sie an (Leertaste)."},
+  pause: {label: "Pause"},
   next: {label: ">", name: "Nächste Generation", help: "Geht zur nächsten Generation (])."},
   last: {label: ">|", name: "Letzter Tick", help: "Geht zum letzten Tick."},
   live: {label: "Live", help: "Kehrt zur laufenden Welt zurück (P)."},

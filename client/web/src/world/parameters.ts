@@ -18,7 +18,7 @@ export function in_language(registry: readonly ParameterDescription[]): Paramete
     const {name = "", topic = "", help = "", unit = "", choices = [], choice_help = []} = about;
     return {
       ...about,
-      topic: topic_titles[topic] ?? topic,
+      topic: topic_titles[topic.toLowerCase().replace(/ /g, "_")] ?? topic,
       help: parameter_helps[name] ?? help,
       unit: unit_words[unit] ?? unit,
       choice_help: choice_help.map((text, n) => choice_helps[`${name} ${choices[n]}`] ?? text),
