@@ -2,6 +2,7 @@
 import type * as english from "../texts/parameters";
 
 import {capitalised, with_separators} from "./numbers";
+import {allowed_words} from "./registry";
 
 const counted = (count: number, one: string, many: string): string =>
   `${with_separators(count)} ${count === 1 ? one : many}`;
@@ -64,7 +65,7 @@ export const parameter_texts: typeof english.parameter_texts = {
   set_by: (client) => `gesetzt von ${client}`,
   planned: (values) =>
     `geplant: ${values[0]}${values.length > 1 ? ` und ${with_separators(values.length - 1)} weitere` : ""}`,
-  refused: (got, allowed) => `${got === "" ? "" : `${got} ist nicht möglich, `}erlaubt: ${allowed}`,
+  refused: (got, allowed) => `${got === "" ? "" : `${allowed_words(got)} ist nicht möglich, `}erlaubt: ${allowed}`,
   wrong_text: (got, is_whole, allowed) =>
     `„${got}“ ist nicht möglich, erlaubt: ${is_whole ? "ganze Zahlen von " : ""}${allowed}`,
   now_and_then: (now, later) => `${now}, dann ${later}`,

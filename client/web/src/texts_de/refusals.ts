@@ -69,7 +69,7 @@ export const reason_text: typeof english.reason_text = (reason) => sentences[rea
 function violation_text({field = "", got = "", allowed = ""}: NonNullable<Status["violations"]>[number]): string {
   const name = field.slice(field.lastIndexOf(".") + 1);
   return `${parameter_labels[name] ?? fields[name] ?? name}: ${
-    got === "" ? "" : `${got} ist nicht möglich, `}erlaubt: ${allowed_words(allowed)}`;
+    got === "" ? "" : `${allowed_words(got)} ist nicht möglich, `}erlaubt: ${allowed_words(allowed)}`;
 }
 
 export const refusal_text: typeof english.refusal_text = ({message = "", reason, violations = []}) => {

@@ -467,8 +467,9 @@ export const unit_words_of_one: typeof english.unit_words_of_one = {
 
 const number = "(-?[0-9]+(?:[.][0-9]+)?(?:e[+-]?[0-9]+)?)";
 
-/** Ranges as the server writes them. */
+/** Numbers and ranges as the server writes them. */
 const ranges: readonly(readonly[RegExp, string])[] = [
+  [new RegExp(`^${number}$`), "$1"],
   [new RegExp(`^${number} to ${number}$`), "$1 bis $2"],
   [new RegExp(`^${number} to ${number} in generation ${number}$`), "$1 bis $2 in Generation $3"],
   [new RegExp(`^a whole number, ${number} to ${number}$`), "eine ganze Zahl, $1 bis $2"],

@@ -12,7 +12,6 @@ export const second_world_texts: typeof english.second_world_texts = {
   past: (generation, world) => `Generation ${with_separators(generation)} von ${world}`,
   past_hint: "ihre Vergangenheit, als Wiedergabe",
   generation: "Generation",
-  show_past: "Zeigen",
   fork: (world) => `Eine Abzweigung von ${world}`,
   fork_hint: "eine neue Welt, die beim gezeigten Moment beginnt",
 };
