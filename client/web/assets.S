@@ -1,4 +1,4 @@
-// The files of the page, each compressed with gzip. server/network/web_assets.cpp declares their names.
+// The bytes of the files of the page: each file as NAME, and its end as NAME_end.
         .section .rodata
 
         .macro asset name, file
@@ -9,11 +9,7 @@
         .byte 0
         .endm
 
-        asset evod_web_index_html, "index.html.gz"
-        asset evod_web_app_css, "app.css.gz"
-        asset evod_web_page_js, "page.js.gz"
-        asset evod_web_shared_js, "shared.js.gz"
-        asset evod_web_panels_js, "panels.js.gz"
-        asset evod_web_worker_js, "worker.js.gz"
+#define WEB_FILE(name, path, type, file) asset name, file
+#include "client/web/files.inc"
 
         .section .note.GNU-stack, "", %progbits

@@ -7,14 +7,9 @@
 #ifdef EVOD_WEB
 
 // client/web/assets.S defines each file as NAME and its end as NAME_end.
-extern "C" {
-extern const char evod_web_index_html[], evod_web_index_html_end[];
-extern const char evod_web_app_css[], evod_web_app_css_end[];
-extern const char evod_web_page_js[], evod_web_page_js_end[];
-extern const char evod_web_shared_js[], evod_web_shared_js_end[];
-extern const char evod_web_panels_js[], evod_web_panels_js_end[];
-extern const char evod_web_worker_js[], evod_web_worker_js_end[];
-}
+#define WEB_FILE(name, path, type, file) extern "C" const char name[], name##_end[];
+#include "client/web/files.inc"
+#undef WEB_FILE
 
 #endif
 
@@ -37,12 +32,9 @@ WebAsset asset(std::string_view path, std::string_view type, const char* begin, 
 
 const std::vector<WebAsset>& all_assets() {
     static const std::vector<WebAsset> all = {
-        asset("/", "text/html; charset=utf-8", evod_web_index_html, evod_web_index_html_end),
-        asset("/app.css", "text/css; charset=utf-8", evod_web_app_css, evod_web_app_css_end),
-        asset("/page.js", "text/javascript; charset=utf-8", evod_web_page_js, evod_web_page_js_end),
-        asset("/shared.js", "text/javascript; charset=utf-8", evod_web_shared_js, evod_web_shared_js_end),
-        asset("/panels.js", "text/javascript; charset=utf-8", evod_web_panels_js, evod_web_panels_js_end),
-        asset("/worker.js", "text/javascript; charset=utf-8", evod_web_worker_js, evod_web_worker_js_end),
+#define WEB_FILE(name, path, type, file) asset(path, type, name, name##_end),
+#include "client/web/files.inc"
+#undef WEB_FILE
     };
     return all;
 }

@@ -39,6 +39,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--panel", action="append", default=[], help="the title of a panel; may be repeated")
     parser.add_argument("--size", action="append", default=[], help="for example 390x844; default: all sizes")
+    parser.add_argument("--language", choices=("en", "de"), default="en", help="titles of panels are in this language")
     parser.add_argument("--theme", choices=("dark", "light"), default="dark")
     given = parser.parse_args()
     sizes = [tuple(map(int, size.split("x"))) for size in given.size] or SIZES
@@ -47,7 +48,8 @@ def main():
     for size in sizes:
         name = "x".join(map(str, size))
         browser.driver.get(given.url)
-        browser.run("localStorage.clear(); localStorage.setItem('evod.theme', arguments[0])", given.theme)
+        browser.run("localStorage.clear(); localStorage.setItem('evod.theme', arguments[0]); "
+                    "localStorage.setItem('evod.language', arguments[1])", given.theme, given.language)
         show(browser, size)
         browser.open(given.url)
         browser.wait("evod.app.world().history.is_complete", "the curve")

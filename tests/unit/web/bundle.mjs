@@ -13,10 +13,21 @@ process.on("exit", () => rmSync(made, { recursive: true }));
  *
  *  modules  "world/link", or "breeding": all modules of the folder */
 export async function bundle(...modules) {
+  return bundle_of(sources, modules);
+}
+
+/** As bundle(), with the German texts. */
+export async function german_bundle(...modules) {
+  const copy = path.join(made, "german");
+  execFileSync(path.join(sources, "../language_sources"), ["de", copy]);
+  return bundle_of(path.join(copy, "client/web/src"), modules);
+}
+
+function bundle_of(folder, modules) {
   const files = modules.flatMap((module) => module.includes("/") ? [module]
-    : readdirSync(path.join(sources, module)).map((file) => `${module}/${file.replace(/\.ts$/, "")}`));
-  const out = path.join(made, `${modules.join("+").replaceAll("/", ".")}.mjs`);
+    : readdirSync(path.join(folder, module)).map((file) => `${module}/${file.replace(/\.ts$/, "")}`));
+  const out = path.join(made, `${folder === sources ? "" : "german."}${modules.join("+").replaceAll("/", ".")}.mjs`);
   execFileSync("esbuild", ["--bundle", "--format=esm", "--loader=ts", "--loader:.glsl=text", "--log-level=warning", `--outfile=${out}`],
-    { cwd: sources, input: files.map((file) => `export * from "./${file}";\n`).join("") });
+    { cwd: folder, input: files.map((file) => `export * from "./${file}";\n`).join("") });
   return import(out);
 }

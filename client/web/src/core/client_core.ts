@@ -166,7 +166,7 @@ export class ClientCore implements CoreSession {
   #take_welcome(message: ServerMessage): void {
     if (message.goodbye !== undefined) {
       const loss = loss_of(message.goodbye.status);
-      const refused = {message: `the server at ${this.#server} refused this client: ${loss.message}`, code: loss.code};
+      const refused = {...loss, message: `the server at ${this.#server} refused this client: ${loss.message}`};
       this.retry_late = loss.code === "CODE_RESOURCE_EXHAUSTED";
       if (loss.code !== "CODE_RESOURCE_EXHAUSTED" && loss.code !== "CODE_UNAVAILABLE") {
         this.failed = refused;
@@ -211,5 +211,6 @@ export class ClientCore implements CoreSession {
 
 /** Returns the reason in a Status. */
 function loss_of(status: Status|undefined): Loss {
-  return {message: status?.message ?? "the server ended the session", code: status?.code ?? ""};
+  const {message = "the server ended the session", code = "", reason} = status ?? {};
+  return {message, code, ...(reason !== undefined && {reason})};
 }

@@ -40,6 +40,7 @@ export type CoreEvent = Tagged<CoreEvents>;
 export interface Loss {
   message: string; // a sentence
   code: string; // "CODE_UNAUTHENTICATED" …; empty if there is none
+  reason?: string|undefined; // "REASON_TOKEN_UNKNOWN" …
 }
 
 export type SubscriptionRequest = {

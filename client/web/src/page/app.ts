@@ -226,6 +226,22 @@ export class App implements KeyTarget {
     });
   }
 
+  reload(): void {
+    const {name, past, snapshot} = this.world();
+    const link = past.is_own_replay ? this.link() : link_of(location.origin + location.pathname, {
+      world: name,
+      generation: null,
+      tick: null,
+      island: snapshot && snapshot.island_count > 1 ? snapshot.island : null,
+      organism: null,
+      rate: null,
+    });
+    if (link) {
+      history.replaceState(null, "", link);
+    }
+    location.reload();
+  }
+
   copy_link = (world: ViewedWorld): void => {
     const link = this.link(world);
     if (link) {

@@ -1,5 +1,6 @@
 // main: starts the page: loads the protocol, starts the worker, connects, and shows the worlds when the session is
 // open.
+import {language} from "../texts/language";
 import {start_texts} from "../texts/start";
 import {show_icon} from "../widgets/icon";
 import {columns, figures} from "../world/measurements";
@@ -14,7 +15,7 @@ declare const trustedTypes:
   {createPolicy(name: string, rules: {createScriptURL(url: string): string}): {createScriptURL(url: string): string}}|
   undefined;
 
-const worker_file = "worker.js";
+const worker_file = `${language.folder}worker.js`;
 
 /** The browser starts a worker only from an address that the policy has allowed; this one allows no other. */
 function start_worker(): Worker {

@@ -1,6 +1,5 @@
 // RunBar: the controls of the shown world that are always in reach: run and pause, one generation, replay, fork, speed.
 import {both_texts} from "../texts/both";
-import {shown_number} from "../texts/numbers";
 import {run_bar_texts as texts} from "../texts/run_bar";
 import {speed_text} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
@@ -144,7 +143,7 @@ export function toggle_replay(context: PanelContext, world: ViewedWorld): void {
 /** The speed at a position of the slider, in two significant digits, so that 1 and 10 are easy to hit. */
 function factor_at(position: number): number {
   const exact = slider_min * Math.pow(speed_max / slider_min, position / slider_steps);
-  return Number(shown_number(Number(exact.toPrecision(exact < 0.95 ? 1 : 2))).replace(/,/g, ""));
+  return Number(exact.toPrecision(exact < 0.95 ? 1 : 2));
 }
 
 function position_of(factor: number): number {

@@ -1,5 +1,6 @@
 // best_genes: the genes of the best organism of a run, from the shown population or from the run file.
 import {csv_records, CsvError} from "../core/csv";
+import {gene_name} from "../texts/genes";
 import {shown_number} from "../texts/numbers";
 import {gene_axes} from "../world/gene_axes";
 import type {EndedGeneration} from "../world/history";
@@ -11,7 +12,7 @@ import type {ViewedWorld} from "../world/world";
 export async function genes_of_best(world: ViewedWorld, best: EndedGeneration): Promise<[string, string][]|null> {
   const genes = shown_genes(world, best) ?? await stored_genes(world, best);
   return genes && gene_axes(world.info, world.parameters.set).filter(({name}) => genes.has(name)).map(
-    ({name, choices}) => [name, choices[Math.round(genes.get(name)!)] ?? shown_number(genes.get(name)!)]);
+    ({name, choices}) => [gene_name(name), choices[Math.round(genes.get(name)!)] ?? shown_number(genes.get(name)!)]);
 }
 
 /** The genes by name if the shown population contains the organism. */

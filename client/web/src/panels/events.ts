@@ -2,6 +2,7 @@
 // when.
 import {common_texts} from "../texts/common";
 import {events_texts as texts} from "../texts/events";
+import {language} from "../texts/language";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {check, hint} from "../widgets/form";
@@ -12,6 +13,7 @@ import type {Event as ProtocolEvent} from "../core/protocol";
 import type {Panel, PanelContext} from "../world/panel_context";
 
 const rows_max = 500;
+const time_of_day = (time_ms: number): string => new Date(time_ms).toLocaleTimeString(language.times);
 const fields_characters_max = 300; // of a command in the journal
 
 interface Row {
@@ -138,7 +140,7 @@ export class EventsPanel implements Panel {
     set_text(this.#empty, this.#rows.length > 0 ? texts.none_of_kind : texts.none_yet);
     this.#list.replaceChildren(...rows.map(
       (row) =>
-        row_of(texts.event_place(new Date(row.time_ms).toLocaleTimeString("en-GB"), row.world, row.tick), row.text)));
+        row_of(texts.event_place(time_of_day(row.time_ms), row.world, row.tick), row.text)));
   }
 }
 

@@ -1,6 +1,6 @@
 // Help: the dialog that lists the keys and gestures of the page.
 import {app_texts} from "../texts/app";
-import {gesture_help, key_help} from "../texts/help";
+import {gesture_help, key_help, key_names} from "../texts/help";
 import {introduction_texts} from "../texts/introduction";
 import {key_texts} from "../texts/keys";
 import {Dialog} from "../widgets/controls";
@@ -31,7 +31,8 @@ export class Help {
       h("dl", {class: "keys"},
         ...lines.map(
           ([of, help]) =>
-            h("div", {}, h("dt", {}, ...of.split("   ").map((key) => h("kbd", {}, key))), h("dd", {}, help)))));
+            h("div", {}, h("dt", {}, ...of.split("   ").map((key) => h("kbd", {}, key_names[key] ?? key))),
+              h("dd", {}, help)))));
   }
 
   toggle(): void {

@@ -90,9 +90,10 @@ class NewWorldDialog {
 
   constructor(context: PanelContext) {
     this.#context = context;
-    presets.forEach(
-      ([name, {description}], i) =>
-        this.#choices.append(this.#choice(h("span", {}, name), description, i === 0, () => this.#choose(name))));
+    presets.forEach(([name, {description}], i) => {
+      const about = texts.descriptions[name] ?? description;
+      this.#choices.append(this.#choice(h("span", {}, name), about, i === 0, () => this.#choose(name)));
+    });
     const same = this.#choice(this.#same_label, texts.same_help, false, () => void this.#choose_same());
     this.#same = same.querySelector("input")!;
     this.#choices.append(same);

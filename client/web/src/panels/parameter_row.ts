@@ -1,6 +1,7 @@
 // ParameterRow: one parameter: its name with unit and remarks, its value, and when it takes effect.
 import type {ParameterDescription, ParameterValue} from "../core/protocol";
 import {effect_texts, parameter_texts as texts} from "../texts/parameters";
+import {allowed_words} from "../texts/registry";
 import {h, set_text} from "../widgets/dom";
 import {type EditedParameter, planned_values} from "../world/parameter_edits";
 import {number_of, value_text} from "../world/parameter_values";
@@ -81,7 +82,7 @@ export class ParameterRow {
       this.#refused,
       this.typing_problem !== "" ? this.typing_problem :
         violation === null       ? "" :
-                                   texts.refused(violation.got, violation.allowed));
+                                   texts.refused(violation.got, allowed_words(violation.allowed)));
     this.#update_help();
   }
 

@@ -2,6 +2,7 @@
 import type {ParameterAssignment, PlannedChange, ScheduledValue} from "../core/protocol";
 import {common_texts} from "../texts/common";
 import {planned_texts as texts} from "../texts/parameters";
+import {parameter_labels} from "../texts/registry";
 import {actor_text} from "../texts/users";
 import {h, set_text} from "../widgets/dom";
 import {button} from "../widgets/form";
@@ -43,5 +44,5 @@ export class PlannedChanges {
 }
 
 function assigned({name, value}: ParameterAssignment|ScheduledValue): string {
-  return `${name} ${value_text(value ?? {})}`;
+  return `${parameter_labels[name ?? ""] ?? name} ${value_text(value ?? {})}`;
 }

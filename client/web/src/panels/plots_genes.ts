@@ -1,6 +1,7 @@
 // GeneChoice: which genes the plots show: all of a group together, or one.
 import {genes_in_plot_max, most_changed} from "../plots/figures";
 import type {Quantity, Subject} from "../plots/figures";
+import {gene_name} from "../texts/genes";
 import {plots_panel_texts as texts} from "../texts/plots_panel";
 import {set_options} from "../widgets/controls";
 import {h} from "../widgets/dom";
@@ -77,7 +78,8 @@ export class GeneChoice {
       (selects ? texts.most_selected : texts.most_changed)(together.length) :
       is_grouped ? (selects ? texts.selection_of_group : texts.means_of_group) :
                    (selects ? texts.selection_of_genes : texts.means_of_all);
-    set_options(this.#genes, [{value: "", text: all}, ...genes.map((gene) => ({value: gene, text: gene}))], this.#gene);
+    const options = genes.map((gene) => ({value: gene, text: gene_name(gene)}));
+    set_options(this.#genes, [{value: "", text: all}, ...options], this.#gene);
     return together;
   }
 

@@ -7,6 +7,7 @@ import {css, ramp_at} from "../render/look";
 import type {PopulationColumns} from "../core/messages";
 import type {ParameterSet} from "../core/protocol";
 import {fitness_text} from "../texts/numbers";
+import {gene_name} from "../texts/genes";
 import {population_texts as texts} from "../texts/population";
 import {observe_size} from "../widgets/canvas_size";
 import {set_attribute} from "../widgets/controls";
@@ -238,7 +239,7 @@ function draw_turned_labels(
   const name_y = top - 4 - context.measureText(high).width - turned_gap;
   context.textBaseline = "middle";
   draw_turned(context, theme.quiet, high, x, top - 4, "left");
-  draw_turned(context, theme.text, clipped(context, axis.name, name_y - 4), x, name_y, "left");
+  draw_turned(context, theme.text, clipped(context, gene_name(axis.name), name_y - 4), x, name_y, "left");
   const low = clipped(context, gene_value_text(axis, axis.min), height - bottom - 6);
   draw_turned(context, theme.quiet, low, x, bottom + 4, "right");
 }
@@ -250,7 +251,7 @@ function draw_labels(
   context.textBaseline = "middle";
   context.textAlign = "center";
   context.fillStyle = theme.text;
-  context.fillText(clipped(context, axis.name, space - 6), x, line_pixels * 0.7);
+  context.fillText(clipped(context, gene_name(axis.name), space - 6), x, line_pixels * 0.7);
   context.fillStyle = theme.quiet;
   context.fillText(clipped(context, high, space - 6), x, line_pixels * 1.8);
   context.fillText(clipped(context, low, space - 6), x, bottom + line_pixels * 0.8);

@@ -8,6 +8,7 @@ import {h, set_text} from "../widgets/dom";
 import {check, hint} from "../widgets/form";
 import {default_look} from "../render/look";
 import type {Panel, PanelContext} from "../world/panel_context";
+import {of_browser} from "../world/storage";
 
 type Which = Look["perception"];
 type Switch = "trails"|"flashes"|"density"|"minimap"|"interpolate";
@@ -32,6 +33,10 @@ export class ViewPanel implements Panel {
   readonly #perception = this.#select((which) => this.#set({perception: which as Which}));
   readonly #forces = this.#select((which) => this.#set({forces: which as Which}));
   readonly #background_label = h("label", {});
+  readonly #language = this.#select((language) => {
+    of_browser.set("language", language);
+    this.#context.reload();
+  });
   readonly #checks: {readonly[name in Switch]: HTMLInputElement} = {
     trails: this.#check("trails"),
     flashes: this.#check("flashes"),
@@ -60,7 +65,8 @@ export class ViewPanel implements Panel {
         h("div", {class: "view-fields"}, ...this.#field("perception", this.#perception, texts.perception),
           ...this.#field("forces", this.#forces, texts.forces)),
         h("hr", {}), h("div", {class: "view-checks"}, row("density"), row("minimap"), row("interpolate")), h("hr", {}),
-        this.#follow_row, this.#follow_hint);
+        this.#follow_row, this.#follow_hint, h("hr", {}),
+        h("div", {class: "view-fields"}, ...this.#field("language", this.#language, texts.language)));
   }
 
   refresh(): void {
@@ -84,6 +90,7 @@ export class ViewPanel implements Panel {
     for (const name of Object.keys(this.#checks) as Switch[]) {
       this.#checks[name].checked = look[name];
     }
+    set_options(this.#language, options(texts.languages), of_browser.get("language"));
     this.#lineage_hint.hidden = look.colour_by !== "lineage";
     this.#follow_row.hidden = world.selection.id === null;
     this.#follow_hint.hidden = world.selection.id !== null;

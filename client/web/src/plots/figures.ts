@@ -1,6 +1,7 @@
 // figures: the plots of one history, or of one history compared with another. Pure functions.
 import {plot_texts} from "../texts/plot";
 import {figure_texts as texts} from "../texts/plots_panel";
+import {gene_name} from "../texts/genes";
 import type {AccountPart, Column, GenePart, HistoryTable, Island} from "./history_table";
 import {thickness_default} from "./plot_content";
 import type {Marks, PlotContent, Series, SeriesColour} from "./plot_content";
@@ -108,7 +109,7 @@ class FigureBuilder {
   gene_lines(genes: readonly string[], part: GenePart|AccountPart): void {
     genes.forEach((gene, i) => {
       const {colour, ...style} = gene_style(i);
-      this.gene_line(gene, part, gene, colour, style, true);
+      this.gene_line(gene, part, gene_name(gene), colour, style, true);
     });
   }
 

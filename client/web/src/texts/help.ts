@@ -1,4 +1,7 @@
 // The help of the keys and gestures. panels.js contains it.
+/** The names of keys where they are not those of keys.ts. */
+export const key_names: {readonly [name: string]: string|undefined} = {};
+
 export const key_help = {
   pause: "run, pause, resume",
   tick: "one tick, then pause",

@@ -4,6 +4,8 @@ import {with_separators} from "./numbers";
 export const new_world_texts = {
   title: "New world",
   experiments: "Experiment",
+  /** What an experiment is about, by its name. Its file has an English description. */
+  descriptions: {} as {readonly [name: string]: string|undefined},
   same: (world: string) => `same as ${world}`,
   same_help: "The parameters and the schedule that this world has now.",
   name: "name",

@@ -1,4 +1,5 @@
-// Numbers and durations as text, in the format of all programs of evod.
+// Numbers and durations as text, in the format of all programs of evod, with the separators of the language.
+import {separators} from "./separators";
 
 /** 1234567 → "1,234,567". */
 export function with_separators(number: number|bigint|string): string {
@@ -8,7 +9,12 @@ export function with_separators(number: number|bigint|string): string {
 
 function separated(text: string): string {
   const [, sign, whole, rest] = /^(-?)(\d*)(.*)$/s.exec(text)!;
-  return (sign ? "−" : "") + whole!.replace(/\B(?=(\d{3})+$)/g, ",") + rest;
+  return (sign ? "−" : "") + whole!.replace(/\B(?=(\d{3})+$)/g, separators.thousands) + localised(rest!);
+}
+
+/** "0.15", as programs write it, with the decimal separator of the language. */
+export function localised(number: string): string {
+  return number.replace(".", separators.decimal);
 }
 
 /** Up to 6 significant digits, without trailing zeros: 0.15, 12.5, 1,234.5; "–" unless the number is finite. */
@@ -82,7 +88,7 @@ export function tenths(number: number): string {
 /** "12.3 s", "4:05 min", "2:00:00 h". */
 export function duration(seconds: number): string {
   if (!(seconds >= 60 && seconds < 1e15)) {
-    return seconds.toFixed(1) + " s";
+    return localised(seconds.toFixed(1)) + " s";
   }
   const whole = Math.round(seconds);
   const two = (value: number): string => String(value).padStart(2, "0");
@@ -100,7 +106,7 @@ export function number_in(field: string, text: string, least: number, most: numb
 
 /** At most this many significant digits, without separators or trailing zeros: "0.15", "1e-7", "1250". */
 export function rounded(number: number, digits = 10): string {
-  return String(Number(number.toPrecision(digits)));
+  return localised(String(Number(number.toPrecision(digits))));
 }
 
 /** Returns the smallest of 1, 2 or 5 times a power of ten that is at least `least`. */

@@ -10,7 +10,6 @@ export const second_world_texts = {
   past: (generation: number, world: string) => `Generation ${with_separators(generation)} of ${world}`,
   past_hint: "its past, in a replay",
   generation: "generation",
-  show_past: "Show",
   fork: (world: string) => `A fork of ${world}`,
   fork_hint: "a new world that starts from the moment shown",
 };

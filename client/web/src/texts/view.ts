@@ -4,6 +4,8 @@ import type {Look} from "../core/messages";
 type Switch = "trails"|"flashes"|"density"|"minimap"|"interpolate";
 
 export const view_texts = {
+  language: "language (Sprache)",
+  languages: {"": "automatic (automatisch)", en: "English", de: "Deutsch"},
   skin: "skin",
   skins: {vivid: "vivid", classic: "classic"} as {readonly[skin in Look["skin"]]: string},
   background: "background",

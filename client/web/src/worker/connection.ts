@@ -8,6 +8,7 @@
 import {ClientCore} from "../core/client_core";
 import type {CoreEvent} from "../core/core_session";
 import type {ConnectionState} from "../core/messages";
+import {reason_text} from "../texts/refusals";
 import {worker_texts} from "../texts/worker";
 import type {Timings} from "./timings";
 
@@ -113,7 +114,8 @@ export class Connection {
     ended?.close();
     const {failed} = core;
     const events = core.lost({message, code});
-    this.#report(failed ? "refused" : "lost", failed?.message ?? message, failed?.code ?? code);
+    this.#report(
+      failed ? "refused" : "lost", reason_text(failed?.reason) || (failed?.message ?? message), failed?.code ?? code);
     this.#listener.take(events); // the page knows why its requests fail
     if (!failed) {
       ++this.#timings.reconnect_count;

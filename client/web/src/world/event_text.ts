@@ -1,10 +1,12 @@
 // event_text: events as sentences, and which of them a user should notice at once.
 //
 // proto/texts/events.json contains the templates, and server/protocol/event_text.h describes them. This file fills them
-// in as the server does; proto/vectors/events.json contains examples, which the tests of both compare. The page fills
-// in the events itself, because it creates events_dropped itself, too.
+// in as the server does; proto/vectors/events.json contains examples, which the tests of both compare. The templates of
+// other languages are in folders next to events.json, and also have the rules parameter, choice and allowed. The page
+// fills in the events itself, because it creates events_dropped itself, too.
 import texts from "../../../../proto/texts/events.json";
-import {capitalised, plain_fitness, with_separators} from "../texts/numbers";
+import {capitalised, localised, plain_fitness, with_separators} from "../texts/numbers";
+import {allowed_words, choice_labels, parameter_labels} from "../texts/registry";
 import {type EventKind, kind_of, type RequestKind} from "../core/messages";
 import type {Event} from "../core/protocol";
 
@@ -89,10 +91,10 @@ function text_of_all(values: unknown[], rule: string, event: Event): Filled {
     case "sum":
       return amount(given.reduce((sum: bigint, value) => sum + whole(value), 0n), words);
     case "max":
-      return {text: plain_fitness(values.length ? Math.max(...values.map(number)) : 0), present: any_given};
+      return {text: localised(plain_fitness(values.length ? Math.max(...values.map(number)) : 0)), present: any_given};
     case "mean":
       return {
-        text: plain_fitness(values.reduce((sum: number, value) => sum + number(value) / values.length, 0)),
+        text: localised(plain_fitness(values.reduce((sum: number, value) => sum + number(value) / values.length, 0))),
         present: any_given
       };
     case "if":
@@ -122,8 +124,14 @@ function text_of(value: unknown, rule: string, event: Event): string {
       return with_separators(typeof value === "string" ? value : whole(value));
     case "text":
       return value === undefined ? "" : String(value);
+    case "parameter":
+      return parameter_labels[String(value)] ?? String(value ?? "");
+    case "choice":
+      return choice_labels[String(value)] ?? String(value ?? "");
+    case "allowed":
+      return allowed_words(String(value ?? ""));
     case "real":
-      return real_text(number(value));
+      return localised(real_text(number(value)));
     default: {
       const named = templates[rule]!;
       return value === undefined  ? "" :

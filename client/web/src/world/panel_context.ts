@@ -28,6 +28,8 @@ export interface PanelContext {
    *  returns false: what it states is not true any more. action: a button of the message. stays: it is a refusal,
    *  which stays until the next action. */
   notify(text: string, holds?: () => boolean, action?: {label: string; act: () => void}, stays?: boolean): void;
+  /** Loads the page again, which then shows the same world, or the same moment of a replay. */
+  reload(): void;
   /** Runs a request, and shows the sentence of a refusal. Returns whether it succeeded. */
   attempt(what: () => Promise<unknown>): Promise<boolean>;
 }

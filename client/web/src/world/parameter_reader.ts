@@ -1,5 +1,6 @@
 // ParameterReader: the parameters of the shown world, read again after each event about them.
 import type {ParameterSet} from "../core/protocol";
+import {experiment_text} from "../texts/experiment";
 
 import type {Changes} from "./changes";
 import type {SnapshotFeed} from "./feed";
@@ -19,7 +20,7 @@ export class ParameterReader {
 
   /** What the organisms of the world try to do, as sentences; empty until the parameters have arrived. */
   get experiment(): string {
-    return this.set?.summary ?? "";
+    return this.set === null ? "" : experiment_text(this.set);
   }
 
   /** The parameters may have changed: poll() reads them. */

@@ -2,6 +2,7 @@
 import type {ParameterDescription, ParameterSet, ParameterValue} from "../core/protocol";
 import {rounded, with_separators} from "../texts/numbers";
 import {parameter_words} from "../texts/parameter_words";
+import {choice_labels} from "../texts/registry";
 
 export function same(a: ParameterValue, b: ParameterValue): boolean {
   return a.real === b.real && a.count === b.count && a.flag === b.flag && a.choice === b.choice;
@@ -15,7 +16,8 @@ export function value_text(value: ParameterValue): string {
   if (value.count !== undefined) {
     return with_separators(value.count);
   }
-  return value.flag !== undefined ? (value.flag ? parameter_words.on : parameter_words.off) : value.choice ?? "";
+  const {flag, choice = ""} = value;
+  return flag !== undefined ? (flag ? parameter_words.on : parameter_words.off) : choice_labels[choice] ?? choice;
 }
 
 export function number_of(value: ParameterValue): number {
@@ -30,11 +32,11 @@ export function value_of(about: ParameterDescription, number: number): Parameter
 }
 
 /** Reads a number that a user has typed; null if it is none. In a real, a comma may stand for the point; in a count,
- *  commas may separate thousands, as value_text() prints them. */
+ *  commas or points may separate thousands, as value_text() prints them. */
 export function typed_number(about: ParameterDescription, text: string): number|null {
   const clean = text.trim().replace("−", "-");
   if (about.kind === "PARAMETER_KIND_COUNT") {
-    const number = /^(\d+|\d{1,3}(,\d{3})+)$/.test(clean) ? Number(clean.replace(/,/g, "")) : NaN;
+    const number = /^(\d+|\d{1,3}([,.]\d{3})+)$/.test(clean) ? Number(clean.replace(/[,.]/g, "")) : NaN;
     return number <= 0xffffffff ? number : null;
   }
   const number = /^[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?$/i.test(clean) ? Number(clean.replace(",", ".")) : NaN;

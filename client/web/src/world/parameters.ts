@@ -1,12 +1,29 @@
 // parameters: the registry of the server: groups of parameters, search, and names for people. Pure functions.
 import type {ParameterDescription} from "../core/protocol";
 import {parameter_words} from "../texts/parameter_words";
+import {
+  choice_helps, choice_labels, parameter_helps, parameter_labels, topic_titles, unit_words,
+  unit_words_of_one} from "../texts/registry";
 
 const unit_length_max = 10; // longer units do not fit next to a field
 
 export interface ParameterGroup {
   title: string;
   members: number[]; // indices in the registry
+}
+
+/** Returns the registry with the texts of the language of the page. A text that this language lacks stays English. */
+export function in_language(registry: readonly ParameterDescription[]): ParameterDescription[] {
+  return registry.map((about) => {
+    const {name = "", topic = "", help = "", unit = "", choices = [], choice_help = []} = about;
+    return {
+      ...about,
+      topic: topic_titles[topic.toLowerCase().replace(/ /g, "_")] ?? topic,
+      help: parameter_helps[name] ?? help,
+      unit: unit_words[unit] ?? unit,
+      choice_help: choice_help.map((text, n) => choice_helps[`${name} ${choices[n]}`] ?? text),
+    };
+  });
 }
 
 /** Returns the parameters that users change most often, in the order of the registry. */
@@ -35,7 +52,8 @@ function plain(text: string): string {
  *  help, the choices or their help. Case is ignored; _ counts as a space. */
 export function matches(about: ParameterDescription, group: string, search: string): boolean {
   const all = plain([
-    about.name ?? "", about.unit ?? "", about.help ?? "", group, ...(about.choices ?? []), ...(about.choice_help ?? [])
+    about.name ?? "", label_of(about), about.unit ?? "", about.help ?? "", group, ...(about.choices ?? []),
+    ...(about.choices ?? []).map(label_of_choice), ...(about.choice_help ?? [])
   ].join(" "));
   return plain(search).split(" ").every((word) => all.includes(word));
 }
@@ -43,6 +61,10 @@ export function matches(about: ParameterDescription, group: string, search: stri
 /** Returns the name for people, without the unit at its end: "Mutation chance", "Tick" for tick_s. */
 export function label_of(about: ParameterDescription): string {
   let name = about.name ?? "";
+  const known = parameter_labels[name];
+  if (known !== undefined) {
+    return known;
+  }
   for (const [unit, end] of [["s", "_s"], ["px", "_px"], ["px/s", "_px_s"], ["kg", "_kg"]] as const) {
     if (about.unit === unit && name.endsWith(end)) {
       name = name.slice(0, -end.length);
@@ -54,14 +76,15 @@ export function label_of(about: ParameterDescription): string {
 
 /** Returns the name of a choice for people: "stochastic universal". */
 export function label_of_choice(choice: string): string {
-  return plain(choice);
+  return choice_labels[choice] ?? plain(choice);
 }
 
 /** Returns the unit after a number: "px", "island" after 1, "islands" after 2. Empty if there is none, or if it is
  * too long. */
 export function unit_text(about: ParameterDescription, number: number): string {
   const unit = about.unit ?? "";
-  const text = about.kind === "PARAMETER_KIND_COUNT" && number === 1 && unit.endsWith("s") ? unit.slice(0, -1) : unit;
+  const is_one = about.kind === "PARAMETER_KIND_COUNT" && number === 1;
+  const text = is_one ? unit_words_of_one[unit] ?? (unit.endsWith("s") ? unit.slice(0, -1) : unit) : unit;
   return text.length > unit_length_max ? "" : text;
 }
 
@@ -75,7 +98,7 @@ export function allowed_text(about: ParameterDescription): string {
     return parameter_words.on_or_off;
   }
   if (about.kind === "PARAMETER_KIND_CHOICE") {
-    return (about.choices ?? []).join(", ");
+    return (about.choices ?? []).map((choice) => choice_labels[choice] ?? choice).join(", ");
   }
   return parameter_words.range(about.min ?? 0, about.max ?? 0);
 }

@@ -5,6 +5,7 @@ import {refusal_text} from "../texts/refusals";
 
 import {Access} from "./access";
 import {Changes, Listeners} from "./changes";
+import {in_language} from "./parameters";
 import {Worlds} from "./worlds";
 
 import type {ConnectionState, FromWorker, RequestKind, ToWorker} from "../core/messages";
@@ -165,7 +166,7 @@ export class Server {
     try {
       if (instance !== this.#instance) {
         const description = await this.request("describe", {});
-        this.parameters = description.parameters ?? [];
+        this.parameters = in_language(description.parameters ?? []);
         this.#instance = instance;
       }
     } catch {

@@ -1,0 +1,5 @@
+// The separators in numbers.
+export const separators = {
+  thousands: ",",
+  decimal: ".",
+};

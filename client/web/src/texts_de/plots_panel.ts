@@ -1,0 +1,104 @@
+// plots_panel: the panel "Plots" and its plots over generations.
+import type * as english from "../texts/plots_panel";
+
+import {gene_label} from "./genes";
+import {shown_number, with_separators} from "./numbers";
+
+export const quantity_texts: typeof english.quantity_texts = {
+  fitness: "Fitness",
+  genes: "Gene",
+  selection: "Selektion",
+  diversity: "Vielfalt",
+  survivors: "Überlebende",
+  deaths: "Todesursachen",
+  food: "Futter"
+};
+
+export const figure_texts: typeof english.figure_texts = {
+  generation: "Generation",
+  series_of: (series, history) => `${series}, ${history}`,
+  deviation: "± 1 Standardabweichung",
+  fitness: {title: "Fitness", y: "Fitness", best: "beste", mean: "Mittelwert", median: "Median", worst: "schlechteste"},
+  genes: {
+    title: "Mittelwerte der Gene",
+    of_one: (gene) => `Gen ${gene_label(gene)}`,
+    y: "Gen-Einheiten",
+    y_of_weights: "Gewicht",
+    mean: "Mittelwert",
+    greatest: "größter",
+    least: "kleinster"
+  },
+  selection: {
+    title: "Selektion der Gene",
+    of_one: (gene) => `Ursachen der Änderung des Mittelwerts von ${gene_label(gene)}`,
+    y: "Gen-Einheiten pro Generation",
+    y_of_weights: "Gewicht pro Generation",
+    change: "Änderung",
+    selection: "Selektion",
+    transmission: "Weitergabe",
+    migration: "Migration"
+  },
+  diversity:
+    {title: "Vielfalt", y: "mittlere Standardabweichung, als Anteil am Bereich des Gens", diversity: "Vielfalt"},
+  survivors: {title: "Am Ende am Leben", y: "Organismen", alive: "am Ende am Leben", born: "geboren"},
+  deaths:
+    {title: "Todesursachen", y: "Organismen", starved: "verhungert", poisoned: "vergiftet", alive: "am Ende am Leben"},
+  food: {title: "Gefressenes Futter und Gift", y: "Stück pro Generation", food: "Futter", poison: "Gift"},
+  values: {title: (gene) => `Werte von ${gene_label(gene)}`, y: "Organismen", organisms: "Organismen", none: "…"},
+  all_died: (generation) => `Generation ${generation}: Alle Organismen starben vor ihrem Ende`,
+  extinction: "alle gestorben",
+};
+
+export const plots_panel_texts: typeof english.plots_panel_texts = {
+  title: "Diagramme",
+  quantity: "Größe",
+  island: "Insel",
+  all_islands: "alle Inseln",
+  island_name: (island) => `Insel ${island}`,
+  running_mean: "Gleitendes Mittel",
+  running_mean_help: "Gleitendes Mittel: Jeder Punkt ist das Mittel dieser Generation und der Generationen davor. " +
+    "Blasse Linien zeigen jede Generation.",
+  each_generation: "jede Generation",
+  fit: "Einpassen",
+  fit_help: "Zeigt alle Generationen.",
+  save_csv: "CSV speichern",
+  save_csv_help: "Speichert den Verlauf aller Inseln als Tabelle.",
+  save_png: "PNG speichern",
+  save_png_help: (width, height) => `Speichert das Diagramm als Bild mit ${width} × ${height} Pixeln.`,
+  known: (count, last) =>
+    `${with_separators(count)} ${count === 1 ? "Generation" : "Generationen"}, bis ${shown_number(last)}`,
+  none_ended: "Noch ist keine Generation zu Ende",
+  from_second: "Bekannt ab der zweiten Generation",
+  loading: "…",
+  selection_of_all: "Price-Gleichung: wie stark die Selektion den Mittelwert jedes Gens geändert hat. Über 0 hatten " +
+    "Organismen mit mehr davon mehr Nachkommen.",
+  selection_of_one:
+    "Price-Gleichung: Die Änderung des Mittelwerts ist Selektion (welche Organismen Nachkommen hatten) " +
+    "+ Weitergabe (Rekombination und Mutation) + Migration.",
+
+  compare: "vergleichen mit",
+  nothing: "nichts",
+  open_file: "CSV-Datei …",
+  open_file_help: "Vergleicht mit der Statistik in einer CSV-Datei dieses Rechners. Die Datei lässt sich auch in den " +
+    "Bereich ziehen. Sie verlässt den Browser nicht.",
+  compared_file: (file) => `Gestrichelt: ${file}`,
+  run: "Lauf der Datei",
+  remove: "Entfernen",
+  remove_help: (file) => `Entfernt ${file} aus den Diagrammen`,
+
+  gene: "Gen",
+  group: "Gruppe von Genen",
+  genes_of: (group) => `Gene: ${group}`,
+  body: "Körper",
+  brain: "Gehirn",
+  free: "frei",
+  most_changed: (count) => `Mittelwerte der ${count} am stärksten geänderten`,
+  most_selected: (count) => `Selektion der ${count} am stärksten geänderten`,
+  means_of_group: "Mittelwerte der ganzen Gruppe",
+  selection_of_group: "Selektion der ganzen Gruppe",
+  means_of_all: "Mittelwerte aller Gene",
+  selection_of_genes: "Selektion aller Gene",
+  organisms_of: (generation) => `Alle Organismen der Generation ${with_separators(generation)}`,
+  organisms_of_island: (generation, island) =>
+    `Alle Organismen der Generation ${with_separators(generation)}, Insel ${island}`,
+};
