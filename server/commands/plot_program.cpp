@@ -14,7 +14,7 @@ namespace {
 
 using base::RefusalCode;
 
-/// The path of the script: in the folder of the running program, or where it is installed; empty if the folder is unknown.
+/// The path of the script: in the folder of the program, or where it is installed; empty if the folder is unknown.
 std::string script_path() {
     std::error_code error;
     const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
