@@ -5,7 +5,6 @@ The environment variable PROTOC contains the path of protoc; by default protoc i
 """
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -66,10 +65,7 @@ def generate_messages(folder: pathlib.Path) -> None:
 
 def version() -> str:
     """Returns the version of evod, which is also the version of this package."""
-    found = re.search(r"project\(evod\s+VERSION\s+([0-9.]+)", (sources / "CMakeLists.txt").read_text())
-    if not found:
-        raise SystemExit(f"{sources / 'CMakeLists.txt'} contains no version of evod")
-    return found[1]
+    return (sources / "VERSION").read_text().strip()
 
 
 setuptools.setup(version=version(), cmdclass={"build_py": BuildWithGenerated})

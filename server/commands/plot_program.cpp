@@ -14,11 +14,16 @@ namespace {
 
 using base::RefusalCode;
 
-/// The path of the script in the folder of the running program; empty if that folder is unknown.
+/// The path of the script: in the folder of the program, or where it is installed; empty if the folder is unknown.
 std::string script_path() {
     std::error_code error;
-    const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-    return error ? std::string{} : (program.parent_path() / "plot_compare").string();
+    const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    if (error) {
+        return {};
+    }
+    const auto built = folder / "plot_compare";
+    return std::filesystem::exists(built, error) ? built.string()
+                                                 : (folder.parent_path() / "libexec/evod/plot_compare").string();
 }
 
 /// Runs the script with these arguments. The script prints its own errors to stderr.

@@ -1,4 +1,4 @@
-// Plot program: draws the curves of `evod compare`. It runs the script plot_compare, installed next to evod, and
+// Plot program: draws the curves of `evod compare`. It runs the script plot_compare, installed in libexec/evod, and
 // needs Python with matplotlib.
 //
 // Threads  one. The caller waits until the script has ended.

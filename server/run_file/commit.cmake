@@ -2,6 +2,9 @@
 # unknown. Every build runs this script. It leaves the header untouched if its contents would not change.
 cmake_minimum_required(VERSION 3.25)
 set(commit "")
+if(EXISTS ${SOURCE}/COMMIT) # the source archive of a release
+  file(STRINGS ${SOURCE}/COMMIT commit LIMIT_COUNT 1)
+endif()
 find_package(Git QUIET)
 if(Git_FOUND)
   set(git ${GIT_EXECUTABLE} --no-optional-locks -C ${SOURCE})

@@ -109,7 +109,7 @@ class Reader:
         self.scratch, self.home = folder, folder / "home"
         work = self.home / "evod"
         (work / "build").mkdir(parents=True)
-        for name in "CMakeLists.txt", "experiments", "scripts", "proto":
+        for name in "CMakeLists.txt", "VERSION", "experiments", "scripts", "proto":
             (work / name).symlink_to(ROOT / name)
         made = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
         shutil.copytree(ROOT / "client/python", work / "client/python", ignore=made)

@@ -404,7 +404,7 @@ class Commands(WithServer):
         self.assertEqual(len(events), 3)
 
     def test_it_describes_and_completes(self):
-        self.assertIn("0.2.0", self.evoctl("describe"))
+        self.assertIn("1.0.0", self.evoctl("describe"))
         for words, offered in ((["set", "mutation_ch"], ["mutation_chance="]),
                                (["set", "selection=r"], ["selection=roulette",
                                 "selection=random"]), (["get", "mutation_ch"], ["mutation_chance"]),

@@ -37,7 +37,7 @@ def about(root, build):
         "kernel": platform.release(),
         "compiler": output(os.path.realpath(compiler), "--version").splitlines()[0],
         "flags": first(r"CMAKE_CXX_FLAGS_RELEASE:\w+=(.*)", cache),
-        "version": first(r"VERSION (\S+)", (root / "CMakeLists.txt").read_text().split("project(")[1]),
+        "version": (root / "VERSION").read_text().strip(),
         "commit": output("git", "rev-parse", "--short", "HEAD", cwd=root) + (" with changes" if changed else ""),
         "date": datetime.date.today().isoformat(),
         "packages": {name: package_version(name) for name in
