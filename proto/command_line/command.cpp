@@ -237,6 +237,7 @@ std::vector<std::string> Command::read(const std::vector<std::string>& words) {
             return {text_of(error, *app_)};
         }
     };
+    words_ = words;
     const std::vector<std::string> errors = error_of(words);
     if (options_file_ == nullptr || options_file_->count() != 1 || !app_->get_subcommands().empty()) {
         return errors;
@@ -248,6 +249,16 @@ std::vector<std::string> Command::read(const std::vector<std::string>& words) {
     }
     file.words.insert(file.words.end(), words.begin(), words.end());
     return error_of(file.words);
+}
+
+std::map<std::string, std::vector<std::string>> Command::given() const {
+    std::map<std::string, std::vector<std::string>> values;
+    for (const CLI::Option* option : std::as_const(*app_).get_options()) {
+        if (option->count() > 0) {
+            values.emplace(option->get_name(), option->results());
+        }
+    }
+    return values;
 }
 
 int Command::run() {

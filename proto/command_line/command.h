@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -138,6 +139,10 @@ class Command {
     std::optional<int> parse(int argument_count, const char* const* arguments);
     /// Parses like parse(), but returns the errors instead of printing them. The words must not ask for the help.
     std::vector<std::string> read(const std::vector<std::string>& words);
+    /// The words of the last call of parse() or read().
+    const std::vector<std::string>& words() const { return words_; }
+    /// The values of the options that the command line or its options file contained, by name: "--port".
+    std::map<std::string, std::vector<std::string>> given() const;
     /// Runs the action of the given subcommand, or of the program if none was given. Returns the exit status.
     int run();
     /// Prints an error that parse() cannot detect, in the format of parse(). Returns the exit status.
@@ -175,6 +180,7 @@ class Command {
     std::string version_;      // of the program; empty for a subcommand
     std::string option_group_; // heading for the next options; empty: "Options"
     CLI::Option* options_file_ = nullptr;
+    std::vector<std::string> words_;
     std::string owner_; // owner of options that are handed down; empty: none are handed down
     std::vector<Variable> variables_;
     std::vector<std::shared_ptr<void>> kept_;

@@ -11,9 +11,12 @@
 
 #include <atomic>
 #include <initializer_list>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 namespace evod::commands {
 namespace {
@@ -91,6 +94,48 @@ std::string content_of(const network::Server& server) {
     return seed ? ", world \"" + name + "\", seed " + std::to_string(seed->value) : "";
 }
 
+/// Reads the options of the running server again, after SIGHUP. Sets the level of the log, and logs which other options
+/// wait for the next start.
+///
+/// app      as parsed when the server started.
+std::optional<network::ChangeableOptions> reread(const Command& app) {
+    Command again{app.name(), "", ""};
+    ServeOptions options;
+    add_all_options(again, options);
+    const std::vector<std::string> errors = again.read(app.words());
+    for (const std::string& error : errors) {
+        log::error("SIGHUP: the configuration stays as it is: {}", error);
+    }
+    const auto tls = tls_files(options.tls);
+    if (!tls && errors.empty()) {
+        log::error("SIGHUP: the configuration stays as it is: {}", tls.error().message);
+    }
+    if (!tls || !errors.empty()) {
+        return std::nullopt;
+    }
+    const auto before = app.given(), now = again.given();
+    if (!now.contains("--config")) {
+        return network::ChangeableOptions{.tls = *tls, .storage = options.storage};
+    }
+    log::info("SIGHUP: configuration reloaded from {}", now.at("--config").front());
+    log::set_level(log::level_named(options.log_level));
+    std::set<std::string> changeable{"--log-level", "--keep-runs", "--disk-max"};
+    if (before.contains("--tls-cert") && now.contains("--tls-cert")) {
+        changeable.insert({"--tls-cert", "--tls-key", "--tls-client-ca"});
+    }
+    for (const command_line::OptionDescription& option : again.options()) {
+        const std::string& name = option.names.back();
+        const auto value = [&name](const auto& given) {
+            const auto found = given.find(name);
+            return found == given.end() ? std::vector<std::string>{} : found->second;
+        };
+        if (!changeable.contains(name) && value(before) != value(now)) {
+            log::warn("SIGHUP: {} takes effect at the next start", name.substr(2));
+        }
+    }
+    return network::ChangeableOptions{.tls = *tls, .storage = options.storage};
+}
+
 /// Runs the server until a signal or a ShutDown request ends it. Returns the exit status.
 int run_server(base::Result<network::ServerOptions> options) {
     if (!options) {
@@ -133,15 +178,16 @@ void add_server(Command& app) {
     add_all_options(app, options);
     app.footer("Without a subcommand, evod starts a server.");
     app.hand_options_down("the server");
-    app.action([&options] {
+    app.action([&options, &app] {
         begin_log(options);
-        return share_worlds("server", options.sharing, true, [&options](const SharedWork& shared) {
+        return share_worlds("server", options.sharing, true, [&options, &app](const SharedWork& shared) {
             log_processes(shared);
             auto server = server_options(options, shared.maker == nullptr ? std::nullopt
                                                                           : std::optional{network::SharingProcesses{
                                                                                 shared.processes, *shared.maker}});
             if (server) {
                 server->threads = shared.threads;
+                server->reread = [&app] { return reread(app); };
             }
             return run_server(std::move(server));
         });

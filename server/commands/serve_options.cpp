@@ -82,23 +82,6 @@ void add_http_options(Command& command, ServeOptions& options) {
         .check(network::embedder_problem);
 }
 
-base::Result<std::optional<access::TlsFiles>> tls_files(const ServeOptions::Tls& tls) {
-    const char* const missing = tls.certificate.empty() && !tls.key.empty()   ? "--tls-key requires --tls-cert"
-                                : tls.key.empty() && !tls.certificate.empty() ? "--tls-cert requires --tls-key"
-                                : tls.certificate.empty() && !tls.client_ca.empty()
-                                    ? "--tls-client-ca requires --tls-cert and --tls-key"
-                                    : nullptr;
-    if (missing != nullptr) {
-        return refusal(base::RefusalCode::FailedPrecondition, missing);
-    }
-    if (tls.certificate.empty()) {
-        return std::nullopt;
-    }
-    return access::TlsFiles{.certificate = tls.certificate,
-                            .key = tls.key,
-                            .client_ca = tls.client_ca.empty() ? std::nullopt : std::optional{tls.client_ca}};
-}
-
 /// The configuration of the server for these worlds, or for the replay of this run.
 base::Result<network::ServerOptions> serving(std::variant<network::LiveWorlds, network::ReplayedRun> worlds,
                                              const ServeOptions& options) {
@@ -266,6 +249,23 @@ void add_all_options(Command& command, ServeOptions& options) {
     add_server_options(command, options);
     add_first_world_options(command, options);
     add_storage_options(command, options);
+}
+
+base::Result<std::optional<access::TlsFiles>> tls_files(const ServeOptions::Tls& tls) {
+    const char* const missing = tls.certificate.empty() && !tls.key.empty()   ? "--tls-key requires --tls-cert"
+                                : tls.key.empty() && !tls.certificate.empty() ? "--tls-cert requires --tls-key"
+                                : tls.certificate.empty() && !tls.client_ca.empty()
+                                    ? "--tls-client-ca requires --tls-cert and --tls-key"
+                                    : nullptr;
+    if (missing != nullptr) {
+        return refusal(base::RefusalCode::FailedPrecondition, missing);
+    }
+    if (tls.certificate.empty()) {
+        return std::nullopt;
+    }
+    return access::TlsFiles{.certificate = tls.certificate,
+                            .key = tls.key,
+                            .client_ca = tls.client_ca.empty() ? std::nullopt : std::optional{tls.client_ca}};
 }
 
 std::optional<simulation::Speed> parse_speed(const std::string& text) {

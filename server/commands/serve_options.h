@@ -55,6 +55,9 @@ void add_all_options(command_line::Command& command, ServeOptions& options);
 /// Parses "max", or a number of simulated seconds per second. Returns nullopt for any other text.
 std::optional<simulation::Speed> parse_speed(const std::string& text);
 
+/// Returns the files of the TLS options; nullopt if they are not given.
+base::Result<std::optional<access::TlsFiles>> tls_files(const ServeOptions::Tls& tls);
+
 /// Returns the configuration of the server for `evod`. Reads the experiment and the population that the options name.
 /// If neither the options nor the experiment contain a seed, draws one at random.
 ///

@@ -56,6 +56,10 @@ void begin(Level least, Format format) {
         "", std::make_shared<spdlog::sinks::stderr_color_sink_mt>(may_color ? spdlog::color_mode::automatic
                                                                             : spdlog::color_mode::never)));
     spdlog::set_pattern(format == Format::Json ? "%v" : "%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+    set_level(least);
+}
+
+void set_level(Level least) {
     spdlog::set_level(to_spdlog(least));
     spdlog::flush_on(to_spdlog(least));
 }

@@ -31,6 +31,8 @@ struct Fields {
 /// Sets the least severe level that is logged, and the format. Before the first call they are Level::Info and
 /// Format::Text.
 void begin(Level least, Format format);
+/// Changes the least severe level that is logged. May be called on any thread, at any time after begin().
+void set_level(Level least);
 Level level_named(std::string_view name); // name: one of level_names
 
 bool wanted(Level level);

@@ -242,7 +242,7 @@ void Server::wait_for_signal() {
         }
         const char* const name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
         if (signal == SIGHUP) {
-            reread_certificate();
+            reread();
         } else if (!going_away_) {
             log::info("{}: shutting down", name);
             begin_shutdown();
@@ -253,6 +253,22 @@ void Server::wait_for_signal() {
         }
         wait_for_signal();
     });
+}
+
+void Server::reread() {
+    if (options_.reread) {
+        auto now = options_.reread();
+        if (!now) {
+            return;
+        }
+        if (options_.listeners.tls && now->tls) {
+            options_.listeners.tls = *std::move(now->tls);
+        }
+        if (archive_ && archive_->thread() != nullptr) {
+            archive_->thread()->disk().set_limits(now->storage);
+        }
+    }
+    reread_certificate();
 }
 
 void Server::reread_certificate() {

@@ -67,6 +67,8 @@ class Server {
     /// Sends the next islands of the newest snapshots, then lets the thread do other work.
     void send_snapshots();
     void wait_for_signal();
+    /// Reads the configuration again, and then the certificate. An invalid configuration changes nothing.
+    void reread();
     /// Reads the files of the certificate again. If that fails, the server keeps the old certificate.
     void reread_certificate();
     void begin_shutdown();

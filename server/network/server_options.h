@@ -91,11 +91,19 @@ struct ReplayedRun {
     std::optional<std::uint64_t> generation; // generation to show first; nullopt: the first
 };
 
+/// What can change while a server runs.
+struct ChangeableOptions {
+    std::optional<access::TlsFiles> tls = {}; // used only if the server has started with TLS
+    recording::StorageLimits storage = {};
+};
+
 struct ServerOptions {
     std::variant<LiveWorlds, ReplayedRun> worlds;
     ListenerOptions listeners;
     LimitOptions limits;
     std::size_t threads = 1; // number of threads in the worker pool
+    // Reads the configuration again after SIGHUP; nullopt: it is invalid, and nothing changes. Logs what it finds.
+    std::function<std::optional<ChangeableOptions>()> reread = {};
 };
 
 } // namespace evod::network

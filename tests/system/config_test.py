@@ -1,11 +1,12 @@
 """The configuration file of the server. EVOD and EVOCTL name the programs, MESSAGES the folder of the message
 classes."""
 import pathlib
+import signal
 import unittest
 
 import past_test as past
 import waiting
-from past_test import EVOD, plain
+from past_test import EVOD, c, plain
 
 
 class Config(past.Case):
@@ -47,6 +48,32 @@ class Config(past.Case):
             path = self.config(*lines)
             self.assertIn(f"{path}: ", self.evod("check-config", path, status=2))
             self.assertIn(error, self.evod("check-config", path, status=2))
+
+    def test_sighup_reads_the_file_again(self):
+        data = f"data = {self.folder}/data"
+        path = self.config(data, "log-level = info")
+        server = self.server("--config", path)
+
+        def reload(*lines):
+            self.config(*lines)
+            server.process.send_signal(signal.SIGHUP)
+
+        reload(data, "log-level = inf", "prot = 3", "sessions-max = 7")
+        plain.until(lambda: f"{path}:3: prot: unknown option; did you mean port?" in server.output(), "an error")
+        self.assertIn(f"the configuration stays as it is: {path}:2: log-level: got inf", server.output())
+        self.assertNotIn("next start", server.output())
+        reload(data, "log-level = debug", "sessions-max = 7", "keep-runs = 0")
+        plain.until(lambda: "sessions-max takes effect at the next start" in server.output(), "a warning")
+        self.assertIn(f"configuration reloaded from {path}", server.output())
+        self.assertNotRegex(server.output(), "(log-level|keep-runs|data|port) takes effect")
+        client = self.client(server)
+        plain.until(lambda: "connected as admin" in server.output(), "a line of the level debug")
+        client.call(reset_world=c.ResetWorld(world="default"))
+        plain.until(lambda: "--keep-runs 0: deleted" in server.output(), "the ended run deleted")
+        pathlib.Path(path).unlink()
+        server.process.send_signal(signal.SIGHUP)
+        plain.until(lambda: "No such file" in server.output(), "the missing file")
+        server.end()
 
 
 if __name__ == "__main__":
