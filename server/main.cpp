@@ -58,6 +58,7 @@ int main(int argument_count, char** arguments) {
     add_verify_command(app);
     add_export_command(app);
     add_backup_command(app);
+    add_data_command(app);
     add_prune_command(app);
     add_check_config_command(app);
     add_token_command(app);

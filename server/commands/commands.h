@@ -28,6 +28,7 @@ void add_replay_command(command_line::Command& app);
 void add_verify_command(command_line::Command& app);
 void add_export_command(command_line::Command& app);
 void add_backup_command(command_line::Command& app);
+void add_data_command(command_line::Command& app);
 void add_prune_command(command_line::Command& app);
 void add_token_command(command_line::Command& app);
 void add_certificate_command(command_line::Command& app);

@@ -91,6 +91,26 @@ class DiskSpace(past.Case):
         plain.until(lambda: server.output().count("--disk-max allows") == 2, "the quota again")
         server.end()  # writes what waits
 
+    def test_runs_of_another_model_version_are_read_only(self):
+        server, client = self.serve()
+        self.reset(client, 1)
+        server.end()
+        stored = pathlib.Path(__file__).parents[1] / "unit" / "run_file" / "format_5.evod"  # model version 3
+        pathlib.Path(self.folder, "old.evod").write_bytes(stored.read_bytes())
+        said = self.evod("data", "--data", self.folder)
+        self.assertRegex(said, r"(?m)^default\.evod +\d+ +\d+ +\S+ +continues$")
+        self.assertRegex(said, r"(?m)^default\.\w+\.evod +\d+ +\d+ +\S+ +ended$")
+        self.assertRegex(said, r"(?m)^old\.evod +3 +\d+ +0\.2\.0 +read only$")
+        server, client = self.serve()
+        worlds = client.call(list_worlds=c.ListWorlds()).worlds
+        self.assertEqual([world.name for world in worlds.damaged], ["old"])
+        self.assertIn("it can read the file (`evod export`)", worlds.damaged[0].reason)
+        pathlib.Path(self.folder, "bad.evod").write_text("text" * 10)
+        done = waiting.run([EVOD, "data", "--data", self.folder], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stdout, r"(?m)^bad\.evod .* unreadable$")
+        self.assertIn("bad.evod is damaged or is not a run file", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[past.sys.argv[0], *past.sys.argv[4:]])

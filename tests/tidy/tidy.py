@@ -317,6 +317,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/run_file_fork and replay/verify",
     ("server/commands", "json_lines"): "unit/commands/run_test, sweep_test and compare_test: options of these commands",
     ("server/commands", "shared_worlds"): "system/mpi_test",
+    ("server/commands", "data"): "system/disk_space_test; its logic is run_file/",
     ("server/commands", "prune"): "system/disk_space_test; its logic is run_file/ended_runs",
     ("server/commands", "limits parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
     ("server/simulation", "local_islands run_parameters"): "unit/simulation/world_test and scheduled_world_test",
