@@ -73,10 +73,10 @@ test("each template of an event has the same fields in German", () => {
   assert.deepEqual(Object.keys(JSON.parse(read("proto/texts/de/viewers.json"))), Object.keys(JSON.parse(read("proto/texts/viewers.json"))));
 });
 
-test("events are German sentences", () => {
+test("events are German sentences", () => { // except for reasons, which the server sends
   const texts = JSON.parse(read("proto/vectors/events.json")).map(({ event }) => page.event_text(event)[0]);
   for (const text of texts) {
-    assert.doesNotMatch(text.replace("lesson.evod is damaged", ""), /undefined|[{}[\]]|\b(the|of|was|is|by)\b/, text);
+    assert.doesNotMatch(text.replace(/lesson.evod is damaged|the disk is \w+/, ""), /undefined|[{}[\]]|\b(the|of|was|is|by)\b/, text);
   }
   assert.ok(texts.includes("Generation 1.234 ist zu Ende: beste Fitness 55,2, Mittelwert 20,8, am Leben 15 von 100, verhungert 1.000, vergiftet 7"));
   const changed = { parameters_changed: { by: { user: "anna" }, revision: 4, changed: [

@@ -2,7 +2,6 @@
 // open.
 import {language} from "../texts/language";
 import {start_texts} from "../texts/start";
-import {show_icon} from "../widgets/icon";
 import {columns, figures} from "../world/measurements";
 import {Server} from "../world/server";
 import {of_tab} from "../world/storage";
@@ -31,7 +30,6 @@ function start_worker(): Worker {
 }
 
 async function run(): Promise<void> {
-  show_icon();
   const linked = take_token(), tokens = new Tokens(of_tab), start = new Start();
   document.body.append(start.element);
   if (typeof OffscreenCanvas === "undefined") {

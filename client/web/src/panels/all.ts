@@ -5,8 +5,6 @@ import type {Panel, PanelContext} from "../world/panel_context";
 import {EventsPanel} from "./events";
 import {LazyPanel} from "./lazy";
 import {ParametersPanel} from "./parameters";
-import {RunPanel} from "./run";
-import {WorldsPanel} from "./worlds";
 
 type Later = typeof import("./loaded_later");
 
@@ -17,8 +15,8 @@ function later(name: string, title: string, make: (loaded: Later, context: Panel
 }
 
 export const panels: ((context: PanelContext) => Panel)[] = [
-  (context) => new WorldsPanel(context),
-  (context) => new RunPanel(context),
+  later("worlds", texts.worlds, ({WorldsPanel}, context) => new WorldsPanel(context)),
+  later("run", texts.run, ({RunPanel}, context) => new RunPanel(context)),
   (context) => new ParametersPanel(context),
   later("view", texts.view, ({ViewPanel}, context) => new ViewPanel(context)),
   later("organism", texts.organism, ({OrganismPanel}, context) => new OrganismPanel(context)),

@@ -11,5 +11,7 @@ export {OrganismPanel} from "./organism";
 export {PhysicsPanel} from "./physics";
 export {PlotsPanel} from "./plots";
 export {PopulationView} from "./population_view";
+export {RunPanel} from "./run";
 export {SecondWorld} from "./second_world";
 export {ViewPanel} from "./view";
+export {WorldsPanel} from "./worlds";

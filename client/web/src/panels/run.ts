@@ -1,6 +1,7 @@
 // RunPanel: the state of the world in words; steps of ticks and generations; reset.
 import {common_texts} from "../texts/common";
 import {number_in} from "../texts/numbers";
+import {panels_texts} from "../texts/panels";
 import {run_texts as texts} from "../texts/run";
 import {outcome_words, state_word} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
@@ -14,7 +15,7 @@ const seed_max = (1n << 64n) - 1n;
 
 export class RunPanel implements Panel {
   readonly name = "run";
-  readonly title = texts.title;
+  readonly title = panels_texts.run;
   readonly element: HTMLElement;
 
   #state = h("p", {});

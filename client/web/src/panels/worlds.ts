@@ -2,6 +2,7 @@
 // fork and delete worlds.
 import {common_texts} from "../texts/common";
 import {with_separators} from "../texts/numbers";
+import {panels_texts} from "../texts/panels";
 import {speed_text, state_word} from "../texts/states";
 import {worlds_texts as texts} from "../texts/worlds";
 import {guarded_button, set_allowed} from "../widgets/controls";
@@ -12,11 +13,12 @@ import {name_problem, unused_name} from "../world/names";
 import type {Panel, PanelContext} from "../world/panel_context";
 
 import {IslandsTable} from "./islands_table";
+import {new_world_dialog} from "./new_world";
 import {table_head, type TableRow, update_rows} from "./rows";
 
 export class WorldsPanel implements Panel {
   readonly name = "worlds";
-  readonly title = texts.title;
+  readonly title = panels_texts.worlds;
   readonly element: HTMLElement;
 
   #worlds = h("tbody", {});
@@ -102,8 +104,7 @@ export class WorldsPanel implements Panel {
   }
 
   #open_dialog(): void {
-    void this.#context.attempt(
-      async () => await (await import("./loaded_later")).new_world_dialog(this.#context).open());
+    void this.#context.attempt(async () => await new_world_dialog(this.#context).open());
   }
 
   #ask_delete(): void {

@@ -1,5 +1,7 @@
 // Texts about the panels themselves: the titles of those that are loaded later, and why one is not shown yet.
 export const panels_texts = {
+  worlds: "Worlds",
+  run: "Run",
   view: "View",
   organism: "Organism",
   glass_box: "Glass box",

@@ -2,7 +2,6 @@
 import {with_separators} from "./numbers";
 
 export const run_texts = {
-  title: "Run",
   ticks: "Ticks",
   generations: "Generations",
   of_ticks: "ticks", // the names of the fields in errors

@@ -2,7 +2,6 @@
 import {with_separators} from "./numbers";
 
 export const worlds_texts = {
-  title: "Worlds",
   table: "Worlds of the server",
   headings: ["World", "State", "Generation", "Tick", "Speed"],
   damaged: "damaged",

@@ -2,6 +2,8 @@
 import type * as english from "../texts/panels";
 
 export const panels_texts: typeof english.panels_texts = {
+  worlds: "Welten",
+  run: "Lauf",
   view: "Ansicht",
   organism: "Organismus",
   glass_box: "Glaskasten",

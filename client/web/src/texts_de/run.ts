@@ -4,7 +4,6 @@ import type * as english from "../texts/run";
 import {with_separators} from "./numbers";
 
 export const run_texts: typeof english.run_texts = {
-  title: "Lauf",
   ticks: "Ticks",
   generations: "Generationen",
   of_ticks: "Ticks",

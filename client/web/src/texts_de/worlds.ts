@@ -4,7 +4,6 @@ import type * as english from "../texts/worlds";
 import {with_separators} from "./numbers";
 
 export const worlds_texts: typeof english.worlds_texts = {
-  title: "Welten",
   table: "Welten des Servers",
   headings: ["Welt", "Zustand", "Generation", "Tick", "Tempo"],
   damaged: "beschädigt",
