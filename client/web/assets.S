@@ -10,6 +10,6 @@
         .endm
 
 #define WEB_FILE(name, path, type, file) asset name, file
-#include "client/web/files.inc"
+#include "web_files.inc"
 
         .section .note.GNU-stack, "", %progbits

@@ -18,10 +18,7 @@ std::optional<ServeOptions> parse(std::vector<const char*> words) {
     words.insert(words.begin(), "evod");
     command_line::Command app{"evod", "", ""};
     ServeOptions options;
-    add_sharing_options(app, options.sharing);
-    add_server_options(app, options);
-    add_first_world_options(app, options);
-    add_storage_options(app, options);
+    add_all_options(app, options);
     app.action([] {});
     testing::internal::CaptureStderr();
     const bool accepted = !app.parse(static_cast<int>(words.size()), words.data());
