@@ -1,5 +1,5 @@
-"""The page in German, in a real Chromium that prefers German: introduction, parameters, refusals, events, and the choice of
-the language."""
+"""The page in German, in a real Chromium that prefers German: introduction, parameters, refusals, events, and the
+choice of the language."""
 import signal
 import sys
 import unittest
@@ -38,8 +38,8 @@ class German(Case):
         Select(self.browser.element(css)).select_by_value(value)
 
     def type_chance(self, text):
-        field = self.browser.wait(f"[...document.querySelectorAll('{FIELD}')].find((e) => e.checkVisibility() && !e.disabled)",
-                                  "the field of mutation_chance")
+        field = self.browser.wait("""[...document.querySelectorAll(arguments[0])].find((e) =>
+            e.checkVisibility() && !e.disabled)""", "the field of mutation_chance", FIELD)
         self.browser.type_into(field, text)
 
     def test_a_new_visitor_reads_german(self):
