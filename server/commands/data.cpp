@@ -15,13 +15,15 @@ namespace evod::commands {
 namespace {
 
 /// What this version of evod can do with a run.
-const char* use_of(run_file::RunFile& file) {
+///
+/// is_of_world  the file has the name of the present run of a world.
+const char* use_of(run_file::RunFile& file, bool is_of_world) {
     const auto mark = file.end_mark();
     if (!mark) {
         return "unreadable";
     }
     const bool is_over = *mark && (*mark)->ended;
-    return file.other_model() ? "read only" : is_over ? "ended" : "continues";
+    return file.other_model() ? "read only" : is_over ? "ended" : is_of_world ? "continues" : "not used";
 }
 
 /// Prints a line for each run file. Returns the exit status.
@@ -46,7 +48,7 @@ int list_runs(const std::string& folder) {
             const run_file::RunIdentity& identity = (*file)->identity();
             std::printf("%-40s %5llu %14llu  %-8s %s\n", name.c_str(),
                         static_cast<unsigned long long>(identity.model_version), bytes, identity.evod_version.c_str(),
-                        use_of(**file));
+                        use_of(**file, paths == &files->of_worlds));
         }
     }
     return status;
@@ -62,8 +64,9 @@ void add_data_command(command_line::Command& app) {
                        "Data folder of the server; default: $XDG_STATE_HOME/evod or ~/.local/state/evod");
     command.footer(
         "States: continues: a server of this version restores the world; ended: the run is complete; read only: the "
-        "run has another model version, so evod export reads it, but no server continues it; unreadable: the file is "
-        "damaged, or a newer evod wrote it. Exit status 1: a file is unreadable.");
+        "run has another model version, so evod export reads it, but no server continues it; not used: the file is a "
+        "copy under a name that no server reads; unreadable: the file is damaged, or a newer evod wrote it. The rows "
+        "are not checked: evod verify does so. Exit status 1: a file is unreadable.");
     command.action([&folder] { return find_data_folder(folder) ? list_runs(folder) : exit_error; });
 }
 

@@ -19,19 +19,31 @@ struct PruneOptions {
 
 /// Prints the runs that it deletes. Returns the exit status.
 int prune(const PruneOptions& options) {
-    const auto runs = options.dry_run ? run_file::surplus_runs(options.data, options.keep_runs)
-                                      : run_file::prune(options.data, options.keep_runs);
-    if (!runs) {
-        return fail(runs.error());
+    run_file::Pruned pruned;
+    if (options.dry_run) {
+        auto runs = run_file::surplus_runs(options.data, options.keep_runs);
+        if (!runs) {
+            return fail(runs.error());
+        }
+        pruned.deleted = *std::move(runs);
+    } else {
+        auto result = run_file::prune(options.data, options.keep_runs);
+        if (!result) {
+            return fail(result.error());
+        }
+        pruned = *std::move(result);
     }
     std::uint64_t bytes = 0;
-    for (const run_file::EndedRun& run : *runs) {
+    for (const run_file::EndedRun& run : pruned.deleted) {
         std::cout << run.path << ": " << run.bytes << " bytes\n";
         bytes += run.bytes;
     }
-    std::cout << (options.dry_run ? "would delete " : "deleted ") << runs->size()
-              << (runs->size() == 1 ? " run, " : " runs, ") << bytes << " bytes\n";
-    return 0;
+    std::cout << (options.dry_run ? "would delete " : "deleted ") << pruned.deleted.size()
+              << (pruned.deleted.size() == 1 ? " run, " : " runs, ") << bytes << " bytes\n";
+    for (const std::string& failure : pruned.failures) {
+        fail(failure);
+    }
+    return pruned.failures.empty() ? 0 : exit_error;
 }
 
 } // namespace

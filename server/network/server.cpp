@@ -146,8 +146,11 @@ base::Result<void> Server::open_worlds(const LiveWorlds& worlds) {
             if (!deleted) {
                 return deleted.error();
             }
-            if (!deleted->empty()) {
-                log::info("--keep-runs {}: deleted {} runs", *keep, deleted->size());
+            for (const std::string& failure : deleted->failures) {
+                log::warn("--keep-runs: {}", failure);
+            }
+            if (!deleted->deleted.empty()) {
+                log::info("--keep-runs {}: deleted {} runs", *keep, deleted->deleted.size());
             }
         }
         host_.storage = protocol::to_proto(simulation::Storage{});

@@ -341,7 +341,10 @@ void StorageWorker::prune(const RunLog& ended) {
         log::warn({.world = world}, "--keep-runs: {}", deleted.error().message);
         return;
     }
-    for (const run_file::EndedRun& run : *deleted) {
+    for (const std::string& failure : deleted->failures) {
+        log::warn({.world = world}, "--keep-runs: {}", failure);
+    }
+    for (const run_file::EndedRun& run : deleted->deleted) {
         log::info({.world = world}, "--keep-runs {}: deleted {}", *keep, run.path);
     }
 }

@@ -8,12 +8,14 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <optional>
 #include <set>
 #include <system_error>
+#include <utility>
 
 namespace evod::run_file {
 namespace {
@@ -41,25 +43,54 @@ Result<void> sync(const std::string& path) {
     return {};
 }
 
-/// Deletes what an interrupted backup has left. Refused if the folder contains anything else.
-Result<void> clear(const std::string& folder) {
+/// A new folder next to the copy, which becomes the copy; without keep(), it is deleted with everything in it. Nothing
+/// is deleted that this process has not made.
+class Staging {
+  public:
+    static Result<Staging> next_to(const fs::path& folder) {
+        std::error_code error;
+        fs::create_directories(folder.parent_path(), error);
+        std::string path = folder.string() + ".partial-XXXXXX";
+        if (error || ::mkdtemp(path.data()) == nullptr) {
+            return cannot("create", path, error ? error.message() : std::strerror(errno));
+        }
+        return Staging{std::move(path)};
+    }
+    Staging(Staging&& other) noexcept : path_{std::exchange(other.path_, {})} {}
+    Staging& operator=(Staging&&) = delete;
+    ~Staging() {
+        std::error_code ignored;
+        if (!path_.empty()) {
+            fs::remove_all(path_, ignored);
+        }
+    }
+    const std::string& path() const { return path_; }
+    void keep() { path_.clear(); }
+
+  private:
+    explicit Staging(std::string path) : path_{std::move(path)} {}
+    std::string path_;
+};
+
+/// Refuses a folder `data` that cannot be copied to `folder`.
+Result<void> expect_apart(const std::string& data, const fs::path& folder) {
     std::error_code error;
-    std::vector<fs::path> left;
-    for (fs::directory_iterator file{folder, error}, end; !error && file != end; file.increment(error)) {
-        const std::string name = file->path().filename().string();
-        if (name != "tokens" && name != "lock" && name.find(".evod") == std::string::npos) {
-            return refusal(RefusalCode::FailedPrecondition,
-                           folder + " contains " + name + ", which is not from a backup: move it away");
-        }
-        if (name != "lock") {
-            left.push_back(file->path());
-        }
+    const fs::path source = fs::canonical(data, error);
+    if (error || !fs::is_directory(source, error)) {
+        return cannot("read", data, error ? error.message() : "it is not a folder");
     }
-    for (const fs::path& path : left) {
-        fs::remove(path, error);
+    const auto files = DataFolder::files_in(data);
+    if (!files) {
+        return files.error();
     }
-    if (error) {
-        return cannot("clear", folder, error.message());
+    if (files->of_worlds.empty() && files->ended.empty() && files->replaced.empty() &&
+        !fs::exists(access::token_file_of(data), error)) {
+        return refusal(RefusalCode::NotFound, data + " contains no runs and no tokens: is it the data folder?");
+    }
+    const fs::path target = fs::weakly_canonical(folder, error);
+    if (std::ranges::mismatch(source, target).in1 == source.end()) {
+        return refusal(RefusalCode::InvalidArgument,
+                       folder.string() + " is in the data folder: name a folder outside it");
     }
     return {};
 }
@@ -198,17 +229,24 @@ class Copier {
     }
 
     Outcome failed(const Refusal& why) {
-        report_.failures.push_back(why.message);
+        std::string line = why.message; // SQLite describes damage in several lines
+        std::ranges::replace(line, '\n', ' ');
+        report_.failures.push_back(line);
         return Outcome::Failed;
     }
 
     Result<void> copy_tokens() {
         const std::string from = access::token_file_of(data_), to = access::token_file_of(target_);
         std::error_code error;
-        fs::copy_file(from, to, error); // keeps the permissions
-        if (error == std::errc::no_such_file_or_directory) {
+        const auto kind = fs::symlink_status(from, error).type();
+        if (kind == fs::file_type::not_found) {
             return {};
         }
+        if (kind != fs::file_type::regular) {
+            failed(cannot("copy", from, "it is not a regular file"));
+            return {};
+        }
+        fs::copy_file(from, to, error); // keeps the permissions
         if (error) {
             return cannot("copy", from, error.message());
         }
@@ -229,23 +267,24 @@ Result<Backup> back_up(const std::string& data, const std::string& given) {
     std::error_code error;
     fs::path folder = fs::absolute(given, error).lexically_normal();
     folder = folder.has_filename() ? folder : folder.parent_path();
-    const bool is_there = fs::exists(fs::symlink_status(folder, error));
-    if (is_there && !(fs::is_directory(folder, error) && fs::is_empty(folder, error))) {
-        return refusal(RefusalCode::AlreadyExists, given + " exists and is not an empty folder: name another one");
+    const fs::file_status there = fs::symlink_status(folder, error);
+    if (given.empty() || (fs::exists(there) && !(fs::is_directory(there) && fs::is_empty(folder, error)))) {
+        return refusal(RefusalCode::AlreadyExists,
+                       "\"" + given + "\" is not an empty folder, and not the name of a new one: name another one");
     }
-    const std::string partial = folder.string() + ".partial";
-    const auto target = DataFolder::open(partial); // locks it, because two backups may have the same name
-    if (!target) {
-        return target.error();
+    if (auto apart = expect_apart(data, folder); !apart) {
+        return apart.error();
     }
-    fs::permissions(partial, fs::status(data, error).permissions(), error);
-    if (auto cleared = clear(partial); !cleared) {
-        return cleared.error();
+    auto staging = Staging::next_to(folder);
+    if (!staging) {
+        return staging.error();
     }
+    const std::string& partial = staging->path();
     auto backup = Copier{data, partial}.copy();
     if (!backup) {
         return backup.error();
     }
+    fs::permissions(partial, fs::status(data, error).permissions(), error);
     if (auto synced = sync(partial); !synced) {
         return synced.error();
     }
@@ -253,6 +292,7 @@ Result<Backup> back_up(const std::string& data, const std::string& given) {
     if (error) {
         return cannot("rename " + partial + " to", folder.string(), error.message());
     }
+    staging->keep();
     if (auto synced = sync(folder.parent_path().string()); !synced) {
         return synced.error();
     }

@@ -2,7 +2,8 @@
 //
 // Consistent   each file is a snapshot between two commits of its run. Runs of different worlds do not depend on each
 //              other. A world that is created or deleted during the backup may be in the copy or not.
-// Complete     the copy is made as `FOLDER.partial`, checked row by row, written to the disk, and then renamed.
+// Complete     the copy is made in a new folder `FOLDER.partial-…`, checked row by row, written to the disk, and then
+//              renamed. A killed backup leaves this folder.
 // Threads      one.
 #pragma once
 
@@ -22,8 +23,8 @@ struct Backup {
     std::vector<std::string> failures = {}; // why single files could not be copied; the others are in the copy
 };
 
-/// Copies the runs and the tokens of the folder `data` to `folder`, which must be empty or must not exist. A refusal
-/// means that there is no copy. What an interrupted backup has left in FOLDER.partial is deleted.
+/// Copies the runs and the tokens of the folder `data` to `folder`, which must be empty or must not exist, and must not
+/// be in `data`. A refusal means that there is no copy.
 base::Result<Backup> back_up(const std::string& data, const std::string& folder);
 
 } // namespace evod::run_file

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 #include <system_error>
 #include <tuple>
 
@@ -11,6 +12,15 @@ namespace evod::run_file {
 
 namespace fs = std::filesystem;
 using base::Result;
+
+namespace {
+
+bool is_run_id(std::string_view text) {
+    constexpr std::size_t digits = 32;
+    return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+} // namespace
 
 Result<std::vector<EndedRun>> surplus_runs(const std::string& folder, std::uint64_t keep, const std::string& world) {
     const auto files = DataFolder::files_in(folder);
@@ -21,6 +31,9 @@ Result<std::vector<EndedRun>> surplus_runs(const std::string& folder, std::uint6
     for (const std::string& path : files->ended) {
         const std::string stem = world_of(path);
         std::error_code error;
+        if (!is_run_id(stem.substr(stem.find('.') + 1)) || !fs::is_regular_file(fs::symlink_status(path, error))) {
+            continue; // a person has put it there
+        }
         runs.push_back({stem.substr(0, stem.find('.')), path, bytes_of_run(path), fs::last_write_time(path, error)});
     }
     std::ranges::sort(runs, {}, [](const EndedRun& run) { return std::tie(run.ended, run.path); });
@@ -38,16 +51,20 @@ Result<std::vector<EndedRun>> surplus_runs(const std::string& folder, std::uint6
     return runs;
 }
 
-Result<std::vector<EndedRun>> prune(const std::string& folder, std::uint64_t keep, const std::string& world) {
-    auto runs = surplus_runs(folder, keep, world);
-    if (runs) {
-        for (const EndedRun& run : *runs) {
-            if (auto removed = remove_run_file(run.path); !removed) {
-                return removed.error();
-            }
+Result<Pruned> prune(const std::string& folder, std::uint64_t keep, const std::string& world) {
+    const auto runs = surplus_runs(folder, keep, world);
+    if (!runs) {
+        return runs.error();
+    }
+    Pruned pruned;
+    for (const EndedRun& run : *runs) {
+        if (const auto removed = remove_run_file(run.path); removed) {
+            pruned.deleted.push_back(run);
+        } else {
+            pruned.failures.push_back(removed.error().message);
         }
     }
-    return runs;
+    return pruned;
 }
 
 std::uint64_t bytes_of_run(const std::string& path) {

@@ -20,14 +20,20 @@ struct EndedRun {
     std::filesystem::file_time_type ended;
 };
 
-/// The ended runs that are not among the newest `keep` of their world, the oldest first.
+/// The ended runs that are not among the newest `keep` of their world, the oldest first. Only files whose names contain
+/// the id of a run count.
 ///
 /// world  only of this world; empty: of all.
 base::Result<std::vector<EndedRun>> surplus_runs(const std::string& folder, std::uint64_t keep,
                                                  const std::string& world = {});
 
-/// Deletes the surplus runs and returns them. After a refusal, some may have been deleted.
-base::Result<std::vector<EndedRun>> prune(const std::string& folder, std::uint64_t keep, const std::string& world = {});
+struct Pruned {
+    std::vector<EndedRun> deleted;
+    std::vector<std::string> failures; // why the others could not be deleted
+};
+
+/// Deletes the surplus runs. Refused if the folder cannot be read.
+base::Result<Pruned> prune(const std::string& folder, std::uint64_t keep, const std::string& world = {});
 
 /// Bytes of a run file and the SQLite files next to it.
 std::uint64_t bytes_of_run(const std::string& path);

@@ -48,7 +48,7 @@ class Backup(past.Case):
         self.assertRegex(self.backup(), r"first: 2 worlds, 0 ended runs and the tokens, \d+ bytes\n$")
         self.assertEqual(os.stat(f"{self.copy}/tokens").st_mode & 0o777, 0o600)
         self.assertIn("anna", self.evod("token", "list", "--data", self.copy))
-        self.assertFalse(pathlib.Path(self.copy + ".partial").exists())
+        self.assertEqual(os.listdir(f"{self.folder}/copies"), ["first"])
         copied = max(hashes(f"{self.copy}/w.evod"))
         self.assertGreaterEqual(copied, 300)
 
@@ -134,11 +134,34 @@ class Backup(past.Case):
         pathlib.Path(self.copy).mkdir(parents=True)
         self.assertIn("1 world", self.backup(self.copy + "/"))
         self.assertIn("is not an empty folder", self.backup(status=1))
-        shutil.rmtree(self.copy)
-        pathlib.Path(self.copy + ".partial").mkdir()
-        pathlib.Path(self.copy + ".partial", "letter").write_text("mine")
-        self.assertIn("contains letter, which is not from a backup", self.backup(status=1))
         self.assertIn("No such file", self.evod("backup", self.copy + "3", "--data", self.folder + "/none", status=1))
+        pathlib.Path(self.folder, "empty").mkdir()
+        self.assertIn("contains no runs and no tokens",
+                      self.evod("backup", self.copy + "3", "--data", self.folder + "/empty", status=1))
+        self.assertIn("is not an empty folder", self.backup("", status=1))
+        self.assertIn("is in the data folder", self.backup(self.data + "/copy", status=1))
+        pathlib.Path(self.folder, "link").symlink_to(self.folder + "/empty")
+        self.assertIn("is not an empty folder", self.backup(self.folder + "/link", status=1))
+        self.assertEqual(sorted(os.listdir(self.folder + "/copies")), ["first"])
+
+    def test_nothing_else_is_deleted(self):
+        """A data folder may have the name that a copy once had while it was made, and a link may lead there."""
+        self.server("--data", self.data).end()
+        precious = pathlib.Path(self.folder, "first.partial")
+        pathlib.Path(self.data).rename(precious)
+        self.data = str(precious)
+        before = sorted(os.listdir(precious))
+        self.assertIn("1 world", self.backup(self.folder + "/first"))
+        pathlib.Path(self.folder, "second.partial").symlink_to(precious)
+        self.assertIn("1 world", self.backup(self.folder + "/second"))
+        self.assertEqual(sorted(os.listdir(precious)), before)
+
+    def test_strange_tokens_do_not_stop_the_runs(self):
+        self.server("--data", self.data).end()
+        os.mkfifo(self.data + "/tokens")
+        said = self.backup(status=1)
+        self.assertRegex(said, "not copied: .*tokens: it is not a regular file")
+        self.assertIn("1 world", said)
 
 
 if __name__ == "__main__":
