@@ -10,7 +10,7 @@ import unittest
 
 import access_test as access
 import waiting
-from access_test import EVOD, c, plain
+from access_test import EVOCTL, EVOD, c, plain
 
 w = plain.w
 SMALL = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2}
@@ -139,9 +139,12 @@ class Genes(access.Access):
 
     def test_history_without_bodies_is_not_about_life(self):
         server = self.serve("--speed", "max")
-        self.evoctl("create", "rated", "fitness=external", "external_bodies=false", "population_size=2", server=server)
-        path = self.file("fitness.csv", "1\n2\n")
-        self.evoctl("--world", "rated", "rate", path, "--generation", "1", server=server)
+        experiment = self.file("rated.json", {"fitness": "external", "external_bodies": False, "population_size": 2})
+        self.evoctl("create", "rated", "--experiment", experiment, server=server)
+        self.come(server).call(run=c.Run(world="rated", generations=1))
+        rate = [EVOCTL, "--server", f"localhost:{server.port}", "--world", "rated", "rate",
+                self.file("fitness.txt", "1\n2\n")]
+        waiting.until(lambda: waiting.run(rate, capture_output=True).returncode == 0, "the end of generation 1")
         for words in ("history",), ("stats",):
             said = self.evoctl("--world", "rated", *words, server=server)
             self.assertIn("BEST", said)

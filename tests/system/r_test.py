@@ -112,7 +112,7 @@ class R(unittest.TestCase):
             figure.unlink()
         best = max(float(row["fitness_best"]) for row in rows_of((self.folder / "run.csv").read_text())
                    if row["generation"] == "3")
-        self.assertTrue(re.search(rf"^ +3 +{best:.3f}", printed, re.M), printed)
+        self.assertTrue(re.search(rf"^ +3 +{f'{best:.9f}'[:-7]}", printed, re.M), printed)
 
     def test_mistakes_are_named(self):
         for words, message in (([], "write: Rscript evod.R FILE"),
