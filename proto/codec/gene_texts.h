@@ -1,4 +1,4 @@
-// Gene texts: the texts of genes that are choices, for people and tables. The chromosome contains the index of a choice.
+// Gene texts: the texts of genes that are choices, for people and tables. Chromosomes contain the index of a choice.
 #pragma once
 
 #include "evod/v1/world.pb.h"
@@ -21,13 +21,13 @@ class GeneTexts {
 
     explicit GeneTexts(const v1::WorldInfo& world);
 
-    /// The choice whose index a gene contains; nullptr if the gene is no choice, or if no choice has this index.
+    /// The choice whose index a gene contains; nullptr for numbers, and if no choice has this index.
     const std::string* choice(std::size_t gene, float value) const;
     /// Returns the choice, or `number`, which is the value as text.
     std::string text_of(std::size_t gene, float value, std::string number) const;
     /// Returns the index of a choice; nullopt if the gene has no choice with this text.
     std::optional<float> index_of(std::size_t gene, std::string_view text) const;
-    /// Returns all choices of a gene: "steel, wood"; "" if the gene is no choice.
+    /// Returns all choices of a gene: "steel, wood"; "" for numbers.
     std::string all(std::size_t gene) const;
 
   private:
