@@ -2,6 +2,7 @@
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
 #include "proto/codec/descendant.h"
+#include "proto/codec/gene_texts.h"
 #include "proto/command_line/command.h"
 
 #include <algorithm>
@@ -137,11 +138,14 @@ std::string changes_of(const v1::Descendant& descendant, const v1::WorldInfo& wo
             text += " " + std::to_string(gene);
         }
     }
+    const codec::GeneTexts texts{world};
+    const auto value_of = [&](std::uint32_t gene, float value) { return texts.text_of(gene, value, fixed(value, 2)); };
     for (const auto& mutation : descendant.mutations()) {
         const auto gene = static_cast<int>(mutation.gene());
         text += (text.empty() ? "" : "; ") +
                 (gene < world.gene_names_size() ? world.gene_names(gene) : std::to_string(gene)) + " " +
-                fixed(mutation.before(), 2) + " → " + fixed(mutation.after(), 2) + " " + name_of(mutation.kind());
+                value_of(mutation.gene(), mutation.before()) + " → " + value_of(mutation.gene(), mutation.after()) +
+                " " + name_of(mutation.kind());
     }
     return text;
 }

@@ -18,6 +18,11 @@ constexpr std::size_t organisms_bytes_max = 64 << 20;
 std::string text_in(const std::string& path, std::string_view kind, std::size_t bytes_max);
 
 /// Reads a population file; throws Stop if it is not one.
-codec::Population population_in(const std::string& path);
+///
+/// list  of the free genes of the world for which it is
+codec::Population population_in(const std::string& path, const v1::FreeGeneList& list);
+
+/// Returns the free genes of an experiment that are choices. The server checks the experiment.
+v1::FreeGeneList choices_in(const std::string& experiment_json);
 
 } // namespace evod::ctl

@@ -38,9 +38,9 @@ std::string check_position(const std::string& word) {
 
 using Genes = std::vector<float>;
 
-std::vector<Genes> genes_in(const std::string& path) {
+std::vector<Genes> genes_in(const std::string& path, const v1::FreeGeneList& list) {
     std::vector<Genes> organisms;
-    const codec::Population population = population_in(path);
+    const codec::Population population = population_in(path, list);
     const auto gene_count = static_cast<std::ptrdiff_t>(population.gene_names.size());
     for (const std::vector<float>& genes : population.islands) {
         for (auto begin = genes.begin(); begin != genes.end(); begin += gene_count) {
@@ -67,7 +67,7 @@ std::vector<Genes> genes_of(Caller& caller, const Common& common, const PlaceOpt
         const v1::OrganismInfo organism = caller.call(std::move(request)).organism();
         return {{organism.genes().begin(), organism.genes().end()}};
     }
-    std::vector<Genes> organisms = genes_in(options.file);
+    std::vector<Genes> organisms = genes_in(options.file, caller.world(common.world).free_genes());
     if (organisms.size() != 1 && organisms.size() < options.positions.size()) {
         throw Stop{ExitCode::Usage, "the population file " + options.file + " contains " +
                                         std::to_string(organisms.size()) + " organisms, too few for " +

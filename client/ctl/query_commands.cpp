@@ -3,6 +3,7 @@
 #include "client/core/history_csv.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
+#include "proto/codec/gene_texts.h"
 #include "proto/command_line/command.h"
 
 #include <google/protobuf/text_format.h>
@@ -120,25 +121,35 @@ std::string gene_text(const google::protobuf::RepeatedPtrField<v1::GeneStatistic
     return table.to_text();
 }
 
-Table generation_table() {
-    return Table{{{"GENERATION", Align::Right},
-                  {"ISLAND", Align::Right},
-                  {"BEST", Align::Right},
-                  {"MEAN", Align::Right},
-                  {"MEDIAN", Align::Right},
-                  {"WORST", Align::Right},
-                  {"DIVERSITY", Align::Right},
-                  {"ALIVE", Align::Right},
-                  {"STARVED", Align::Right},
-                  {"POISONED", Align::Right},
-                  {"LENGTH", Align::Right}}};
-}
-
-void add_generation(Table& table, const v1::GenerationStatistics& g) {
-    table.add({std::to_string(g.generation()), std::to_string(g.island()), fitness_text(g.fitness_best()),
-               fitness_text(g.fitness_mean()), fitness_text(g.fitness_median()), fitness_text(g.fitness_worst()),
-               fixed(g.diversity(), 3), std::to_string(g.alive_count()) + "/" + std::to_string(g.organism_count()),
-               std::to_string(g.starved_count()), std::to_string(g.poisoned_count()), duration(g.simulated_s())});
+/// Returns a row for each generation and island. Without bodies, no organism lives or dies: the columns for that are
+/// missing.
+std::string generation_text(const google::protobuf::RepeatedPtrField<v1::GenerationStatistics>& generations) {
+    const bool bodies = std::ranges::any_of(generations, [](const v1::GenerationStatistics& g) {
+        return g.alive_count() + g.starved_count() + g.poisoned_count() > 0;
+    });
+    std::vector<Table::Column> columns;
+    for (const char* const title : {"GENERATION", "ISLAND", "BEST", "MEAN", "MEDIAN", "WORST", "DIVERSITY"}) {
+        columns.push_back({title, Align::Right});
+    }
+    for (const char* const title : {"ALIVE", "STARVED", "POISONED", "LENGTH"}) {
+        if (bodies) {
+            columns.push_back({title, Align::Right});
+        }
+    }
+    Table table{std::move(columns)};
+    for (const v1::GenerationStatistics& g : generations) {
+        std::vector<std::string> row{std::to_string(g.generation()),   std::to_string(g.island()),
+                                     fitness_text(g.fitness_best()),   fitness_text(g.fitness_mean()),
+                                     fitness_text(g.fitness_median()), fitness_text(g.fitness_worst()),
+                                     fixed(g.diversity(), 3)};
+        if (bodies) {
+            row.insert(row.end(), {std::to_string(g.alive_count()) + "/" + std::to_string(g.organism_count()),
+                                   std::to_string(g.starved_count()), std::to_string(g.poisoned_count()),
+                                   duration(g.simulated_s())});
+        }
+        table.add(std::move(row));
+    }
+    return table.to_text();
 }
 
 /// Options that select a moment of a run by generation and tick; by default the current moment.
@@ -209,12 +220,8 @@ void statistics(const Common& common, const MomentOptions& moment) {
             text += (moment.is_replay() ? "\nthen\n" : "\nnow\n") + live.to_text();
         }
         if (statistics.last_size() > 0) {
-            Table last = generation_table();
-            for (const auto& island : statistics.last()) {
-                add_generation(last, island);
-            }
-            text +=
-                (moment.is_replay() ? "\nthe last generation before\n" : "\nthe last generation\n") + last.to_text();
+            text += (moment.is_replay() ? "\nthe last generation before\n" : "\nthe last generation\n") +
+                    generation_text(statistics.last());
             for (const auto& island : statistics.last()) {
                 text += "\ngenes of its island " + std::to_string(island.island()) + "\n" +
                         gene_text(island.genes(), statistics.world());
@@ -281,13 +288,9 @@ void history(const Common& common, const HistoryOptions& options) {
         if (options.csv) {
             return csv_of(all, caller.world(common.world));
         }
-        Table table = generation_table();
-        for (const auto& generation : all.generations()) {
-            add_generation(table, generation);
-        }
         std::string text = all.generations().empty()
                                ? std::string{"no such generation has ended, or its statistics were purged\n"}
-                               : table.to_text();
+                               : generation_text(all.generations());
         for (const v1::AppliedChange& change : all.changes()) {
             text += core::to_text(change) + "\n";
         }
@@ -384,10 +387,11 @@ void organism(const Common& common, const OrganismOptions& options) {
             }
             text += "\n";
         }
+        const codec::GeneTexts texts{world};
         Table genes{{{"  GENE"}, {"VALUE", Align::Right}}};
         for (int i = 0; i < info.genes_size(); ++i) {
             genes.add({"  " + (i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i)),
-                       fixed(info.genes(i), 2)});
+                       texts.text_of(static_cast<std::size_t>(i), info.genes(i), fixed(info.genes(i), 2))});
         }
         return text + genes.to_text();
     });
@@ -412,10 +416,12 @@ void best(const Common& common, const HistoryOptions& options) {
     const v1::OrganismInfo info = caller.call(std::move(request)).organism();
     print(common, info, [&] {
         const v1::WorldInfo world = caller.world(replay);
+        const codec::GeneTexts texts{world};
         Table genes{{{"GENE"}, {"VALUE", Align::Right}}};
         for (int i = 0; i < info.genes_size(); ++i) {
-            genes.add({i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i),
-                       text::rounded(double{info.genes(i)}, 6)});
+            genes.add(
+                {i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i),
+                 texts.text_of(static_cast<std::size_t>(i), info.genes(i), text::rounded(double{info.genes(i)}, 6))});
         }
         return "fitness " + fitness_text(top->fitness_best()) + ": organism " + std::to_string(info.id()) +
                " of island " + std::to_string(info.island()) + ", generation " + std::to_string(info.generation()) +

@@ -46,7 +46,7 @@ void add_experiment(const std::string& path, v1::CreateWorld& command) {
 }
 
 void add_population(const std::string& path, v1::CreateWorld& command) {
-    const codec::Population population = population_in(path);
+    const codec::Population population = population_in(path, choices_in(command.experiment_json()));
     for (const std::vector<float>& genes : population.islands) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
@@ -88,11 +88,11 @@ void create(const Common& common, const CreateOptions& options) {
     v1::Request request;
     auto& command = *request.mutable_create_world();
     command.set_name(name);
-    if (!options.population.empty()) {
-        add_population(options.population, command);
-    }
     if (!options.experiment.empty()) {
         add_experiment(options.experiment, command);
+    }
+    if (!options.population.empty()) {
+        add_population(options.population, command);
     }
     if (!options.words.empty()) {
         const auto assignments = caller.registry().assignments(options.words);

@@ -40,11 +40,16 @@ GenerationLine line_of(const google::protobuf::RepeatedPtrField<v1::GenerationSt
     return line;
 }
 
+std::string life_of(const GenerationLine& line) {
+    return ", alive " + std::to_string(line.alive_count) + "/" + std::to_string(line.organism_count) + ", starved " +
+           std::to_string(line.starved_count) + ", poisoned " + std::to_string(line.poisoned_count);
+}
+
+/// Without bodies, no organism lives or dies, and the text does not mention it.
 std::string text_of(const GenerationLine& line) {
     return "generation " + std::to_string(line.generation) + ": best " + fitness_text(line.fitness_best) + ", mean " +
-           fitness_text(line.fitness_mean) + ", diversity " + fixed(line.diversity, 3) + ", alive " +
-           std::to_string(line.alive_count) + "/" + std::to_string(line.organism_count) + ", starved " +
-           std::to_string(line.starved_count) + ", poisoned " + std::to_string(line.poisoned_count);
+           fitness_text(line.fitness_mean) + ", diversity " + fixed(line.diversity, 3) +
+           (line.alive_count + line.starved_count + line.poisoned_count > 0 ? life_of(line) : "");
 }
 
 // ---- watch -----------------------------------------------------------------------------------------------------

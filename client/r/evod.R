@@ -24,17 +24,29 @@ run_generations <- function(run) {
   rows[names(rows) != "checksum"]
 }
 
-#' The organisms of a generation: a data frame with their parents, genes, and after its end their fitness.
-#' Fails if the file does not retain the generation.
+#' The choices of the genes that contain the index of one: a list of texts by the name of the gene.
+run_choices <- function(run) {
+  rows <- DBI::dbGetQuery(run, "SELECT json_extract(gene.value, '$.name') AS name, choice.value AS text
+                                FROM run, json_each(run.value, '$.free_genes') AS gene,
+                                     json_each(gene.value, '$.choices') AS choice
+                                WHERE run.key = 'parameters' AND gene.type = 'object'
+                                ORDER BY choice.key")
+  split(as.character(rows$text), rows$name)
+}
+
+#' The organisms of a generation: a data frame with their parents, genes, and after its end their fitness. A gene that
+#' is a choice is the text of the choice. Fails if the file does not retain the generation.
 run_organisms <- function(run, generation) {
   born <- DBI::dbGetQuery(run, "SELECT * FROM population WHERE generation = ? ORDER BY island", list(generation))
   if (nrow(born) == 0) stop("the file has no organisms of generation ", generation)
   genes <- strsplit(c(run_settings(run)$gene_names, body_genes)[1], ",")[[1]]
+  choices <- run_choices(run)
   do.call(rbind, lapply(seq_len(nrow(born)), function(i) {
     count <- born$organism_count[i]
     chromosomes <- readBin(born$chromosomes[[i]], "numeric", count * length(genes), size = 4, endian = "little")
     rows <- data.frame(generation, island = born$island[i], organism = seq_len(count) - 1,
                        matrix(chromosomes, count, byrow = TRUE, dimnames = list(NULL, genes)), check.names = FALSE)
+    for (gene in intersect(genes, names(choices))) rows[[gene]] <- choices[[gene]][rows[[gene]] + 1]
     parents <- unsigned(born$parents[[i]])
     rows$parent_first <- if (length(parents)) parents[c(TRUE, FALSE)] else NA
     rows$parent_second <- if (length(parents)) parents[c(FALSE, TRUE)] else NA

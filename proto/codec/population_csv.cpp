@@ -1,5 +1,6 @@
 #include "proto/codec/population_csv.h"
 
+#include "proto/codec/gene_texts.h"
 #include "proto/text/csv.h"
 
 #include <algorithm>
@@ -102,14 +103,24 @@ std::optional<Columns> read_heading(std::span<const std::string_view> cells, std
     return has_genes ? std::optional{columns} : std::nullopt;
 }
 
-/// Parses a gene. With a separator other than the comma, a comma may be the decimal point.
-bool parse_gene(std::string_view cell, char separator, float& gene) {
+/// Parses a number. With a separator other than the comma, a comma may be the decimal point.
+bool parse_number(std::string_view cell, char separator, float& gene) {
     if (separator == ',' || cell.find(',') == std::string_view::npos) {
         return parse(cell, gene);
     }
     std::string with_point{cell};
     std::ranges::replace(with_point, ',', '.');
     return parse(with_point, gene);
+}
+
+/// Parses a gene. The text of a choice has precedence over an index, because evod writes the text.
+bool parse_gene(std::string_view cell, char separator, const GeneTexts& texts, std::size_t place, float& gene) {
+    auto index = texts.index_of(place, cell);
+    if (!index) {
+        index = texts.index_of(place, without_blanks(cell));
+    }
+    gene = index.value_or(gene);
+    return index || parse_number(cell, separator, gene);
 }
 
 /// What is wrong with a row that cannot be read: names its first wrong column, and the likely cause.
@@ -128,7 +139,7 @@ Damage wrong_row(std::uint64_t line, std::span<const std::string_view> cells, co
 
 } // namespace
 
-Result<Population> read_population(std::istream& in) {
+Result<Population> read_population(std::istream& in, const v1::FreeGeneList& list) {
     text::CsvReader rows{in, text::Separator::FromHeading};
     Population population;
     const bool has_heading = rows.next();
@@ -138,6 +149,7 @@ Result<Population> read_population(std::istream& in) {
                           joined(rows.cells()));
     }
 
+    const GeneTexts texts{list, population.gene_names};
     std::vector<std::vector<float>>& islands = population.islands;
     std::map<std::uint64_t, std::size_t> index_of_island;
     std::vector<float> genes(population.gene_names.size());
@@ -151,16 +163,17 @@ Result<Population> read_population(std::istream& in) {
             return wrong_row(rows.line(), cells, *columns, "", allowed);
         }
         std::uint64_t island = 0, organism = 0;
-        std::string wrong = !parse(cells[columns->island], island)       ? "island"
-                            : !parse(cells[columns->organism], organism) ? "organism"
-                                                                         : "";
+        std::string choices, wrong = !parse(cells[columns->island], island)       ? "island"
+                                     : !parse(cells[columns->organism], organism) ? "organism"
+                                                                                  : "";
         for (std::size_t i = 0; wrong.empty() && i < genes.size(); ++i) {
-            if (!parse_gene(cells[columns->genes[i]], rows.separator(), genes[i])) {
+            if (!parse_gene(cells[columns->genes[i]], rows.separator(), texts, i, genes[i])) {
                 wrong = population.gene_names[i];
+                choices = texts.all(i);
             }
         }
         if (!wrong.empty()) {
-            return wrong_row(rows.line(), cells, *columns, wrong, allowed);
+            return wrong_row(rows.line(), cells, *columns, wrong, choices.empty() ? allowed : "one of " + choices);
         }
         const auto [place, is_new] = index_of_island.try_emplace(island, islands.size());
         if (is_new) {

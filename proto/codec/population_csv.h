@@ -4,7 +4,8 @@
 //   0,0,103.2,97.5,…
 //
 // There is a column for each gene of the chromosomes, in their order. evod numbers islands and
-// organisms from 0, in order, and writes each gene as the shortest text that parses to the same float.
+// organisms from 0, in order, and writes each gene as the shortest text that parses to the same float. A gene that is
+// a choice is the text of the choice. Readers accept its index, too, unless a choice has this text.
 //
 // A file that another program has changed may have its columns in any order, cells in quotation marks or with blanks,
 // empty rows, and a first column without a name (R). If semicolons or tabs separate cells, numbers may have a decimal
@@ -12,6 +13,7 @@
 // numbers, and the organisms of an island in the order of their rows. So rows of several files can be put together.
 #pragma once
 
+#include "evod/v1/world.pb.h"
 #include "proto/codec/result.h"
 
 #include <cstddef>
@@ -36,7 +38,9 @@ struct Population {
 
 /// Reads the genes, those of the body first. Does not check whether a world can start with them. Damage
 /// reads "line 3: got …, allowed …", and names the column.
-Result<Population> read_population(std::istream& in);
+///
+/// list  of the free genes, whose choices may be texts.
+Result<Population> read_population(std::istream& in, const v1::FreeGeneList& list = {});
 
 /// Returns the text of a file with these genes.
 std::string population_text(const Population& population);

@@ -175,7 +175,7 @@ Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
     }
     if (const auto& first = run.file.identity().first_population) {
         const auto write = [&](std::ostream& out) -> Result<void> {
-            replay::write_population(*first, replay::gene_names_of(run.file.identity().parameters), csv, out);
+            replay::write_population(*first, run.file.identity().parameters, csv, out);
             return {};
         };
         if (auto done = write_file(folder / "population.csv", write); !done) {

@@ -2,6 +2,7 @@
 
 #include "proto/codec/population_csv.h"
 #include "server/files/regular_file.h"
+#include "server/protocol/gene_list.h"
 #include "server/simulation/founders.h"
 
 #include <algorithm>
@@ -30,7 +31,9 @@ base::Result<std::vector<evolution::GeneMatrix>> load_islands(const std::string&
         return text.error();
     }
     std::istringstream csv{*std::move(text)};
-    const auto read = codec::read_population(csv);
+    v1::FreeGeneList list;
+    protocol::to_proto(parameters.listed_genes, list);
+    const auto read = codec::read_population(csv, list);
     if (!read) {
         return refusal(RefusalCode::InvalidArgument, path + ": " + read.error().what);
     }

@@ -1,6 +1,7 @@
 #include "server/replay/columns.h"
 
 #include "server/evolution/chromosome.h"
+#include "server/protocol/gene_list.h"
 
 namespace evod::replay {
 
@@ -33,6 +34,17 @@ std::vector<std::string> population_columns(std::span<const std::string> gene_na
 
 std::vector<std::string> gene_names_of(const parameters::Parameters& parameters) {
     return evolution::gene_layout(parameters).names;
+}
+
+codec::GeneTexts gene_texts_of(const parameters::Parameters& parameters) {
+    v1::FreeGeneList list;
+    protocol::to_proto(parameters.listed_genes, list);
+    return {list, gene_names_of(parameters)};
+}
+
+void write_gene(Table& table, const codec::GeneTexts& texts, std::size_t gene, float value) {
+    const std::string* const choice = texts.choice(gene, value);
+    choice != nullptr ? table.text(*choice) : table.number(value);
 }
 
 std::vector<std::string> body_gene_names() {

@@ -1,6 +1,7 @@
 // Columns: the columns of tables that two programs write, or that evod reads back.
 #pragma once
 
+#include "proto/codec/gene_texts.h"
 #include "server/replay/table.h"
 #include "server/simulation/statistics.h"
 
@@ -22,6 +23,10 @@ std::vector<std::string> population_columns(std::span<const std::string> gene_na
 
 /// The names of the genes that the world of a run has.
 std::vector<std::string> gene_names_of(const parameters::Parameters& parameters);
+/// The texts of the genes that the world of a run has.
+codec::GeneTexts gene_texts_of(const parameters::Parameters& parameters);
+/// Writes a gene of an organism: the text of a choice, or a number.
+void write_gene(Table& table, const codec::GeneTexts& texts, std::size_t gene, float value);
 /// The names of the body genes, which every world has whose fitness no client computes.
 std::vector<std::string> body_gene_names();
 

@@ -68,9 +68,9 @@ struct EndedIsland {
 };
 /// placed  WholeGeneration::placed of the organism's island.
 /// ended   results of the organism's island; nullopt before the end of the generation.
-void write_organism(Table& table, const evolution::NextGeneration& born, std::span<const std::uint32_t> placed,
-                    std::size_t organism, const parameters::Parameters& parameters,
-                    const std::optional<EndedIsland>& ended) {
+void write_organism(Table& table, const codec::GeneTexts& texts, const evolution::NextGeneration& born,
+                    std::span<const std::uint32_t> placed, std::size_t organism,
+                    const parameters::Parameters& parameters, const std::optional<EndedIsland>& ended) {
     const double tick_s = parameters.tick_s;
     const std::size_t bred = static_cast<std::size_t>(born.genes.cols()) - placed.size();
     if (organism >= born.parents.size()) {
@@ -79,8 +79,9 @@ void write_organism(Table& table, const evolution::NextGeneration& born, std::sp
         table.number(born.parents[organism].first).number(born.parents[organism].second);
     }
     table.text(origin_of(born.parents.empty(), organism, bred, born.elite_count, born.survivor_count));
-    for (const float gene : evolution::column(born.genes, static_cast<std::uint32_t>(organism))) {
-        table.number(gene);
+    std::size_t gene = 0;
+    for (const float value : evolution::column(born.genes, static_cast<std::uint32_t>(organism))) {
+        write_gene(table, texts, gene++, value);
     }
     if (ended) {
         const run_file::IslandOutcome& outcome = ended->outcome;
@@ -221,6 +222,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
         columns.push_back("objective" + std::to_string(objective));
     }
     Table table{out, format, std::move(columns)};
+    const codec::GeneTexts texts = gene_texts_of(run.file.identity().parameters);
     GenerationReader reader{run.file, run.executor, run.stop};
     return for_each_generation(run, out, [&](std::uint64_t generation) -> Result<void> {
         if (!can_be_read(run.file, generation)) {
@@ -240,7 +242,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
             for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()) && table.can_write();
                  ++organism) {
                 table.number(generation).number(i).number(organism);
-                write_organism(table, born, placed[i], organism, begun.opening.parameters.active, island);
+                write_organism(table, texts, born, placed[i], organism, begun.opening.parameters.active, island);
             }
         }
         return {};
@@ -327,7 +329,7 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
         const evolution::GeneMatrix& genes = whole->begun.born[i].genes;
         population.push_back(genes.leftCols(genes.cols() - std::ssize(whole->placed[i])));
     }
-    write_population(population, gene_names_of(run.file.identity().parameters), format, out);
+    write_population(population, run.file.identity().parameters, format, out);
     return {};
 }
 
@@ -394,15 +396,17 @@ std::uint64_t generations_out_of_reach(run_file::RunFile& file, const base::Stop
     return count;
 }
 
-void write_population(const std::vector<evolution::GeneMatrix>& population, std::span<const std::string> gene_names,
+void write_population(const std::vector<evolution::GeneMatrix>& population, const parameters::Parameters& parameters,
                       Table::Format format, std::ostream& out) {
-    Table table{out, format, population_columns(gene_names)};
+    Table table{out, format, population_columns(gene_names_of(parameters))};
+    const codec::GeneTexts texts = gene_texts_of(parameters);
     for (std::size_t island = 0; island < population.size(); ++island) {
         const evolution::GeneMatrix& genes = population[island];
         for (std::uint32_t organism = 0; organism < genes.cols() && table.can_write(); ++organism) {
             table.number(island).number(organism);
-            for (const float gene : evolution::column(genes, organism)) {
-                table.number(gene);
+            std::size_t gene = 0;
+            for (const float value : evolution::column(genes, organism)) {
+                write_gene(table, texts, gene++, value);
             }
             table.end_row();
         }

@@ -62,7 +62,7 @@ base::Result<void> write_table(const RunSource& run, const WantedTable& wanted, 
 std::uint64_t generations_out_of_reach(run_file::RunFile& file, const base::StopCheck& stop = {});
 
 /// Writes a population that is not from a run file as a table `population`.
-void write_population(const std::vector<evolution::GeneMatrix>& population, std::span<const std::string> gene_names,
+void write_population(const std::vector<evolution::GeneMatrix>& population, const parameters::Parameters& parameters,
                       Table::Format format, std::ostream& out);
 
 } // namespace evod::replay

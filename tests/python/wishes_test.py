@@ -6,6 +6,7 @@ import tempfile
 import unittest
 
 import numpy
+import pandas
 
 import evod
 import waiting
@@ -59,6 +60,30 @@ class Genes(Case):
                              (genes.Choice("n", ["no", "yes"]), range(2))):
             result = self.world(free_genes=[gene]).evaluate(first_gene, 5)
             self.assertLessEqual({float(found.genes["n"]) for found in result.hall_of_fame(20)}, set(values))
+
+    def test_tables_contain_the_texts_of_choices(self):
+        choices = ["relu", "a,b", "1", "16"]
+        listed = [genes.Real("rate"), genes.Choice("act", choices), genes.Permutation("tour", 3)]
+        with tempfile.TemporaryDirectory() as folder, evod.local(data=folder) as lab:
+            world = lab.create_world("texts", {**FREE, "free_genes": listed})
+            best = world.evaluate(first_gene, 4).hall_of_fame(8)
+            population = world.population()
+            texts = [choices[int(value)] for value in population.genes["act"]]
+            self.assertEqual(list(population.to_pandas()["act"]), texts)
+            self.assertEqual(list(world.table("population")["act"]), texts)
+            self.assertEqual(world.table("population")["rate"].dtype, numpy.float32)
+            for found in [*best, world.best()]:
+                row = world.table("organisms").set_index(["generation", "island", "organism"]).loc[found.of]
+                self.assertEqual((row["act"], row["rate"]), (choices[int(found.genes["act"])], found.genes["rate"]))
+                self.assertIn(f"act {row['act']}, tour0", repr(found))
+                self.assertIn(f"<td>{row['act']}</td>", found._repr_html_())
+            again = lab.create_world("again", {**FREE, "free_genes": listed},
+                                     population=[population.to_pandas()[list(population.genes.names)].to_numpy()])
+            numpy.testing.assert_array_equal(again.population().genes, population.genes)
+            with evod.open_run(f"{folder}/texts.evod") as run:
+                self.assertEqual(list(run.population()["act"]), texts)
+                pandas.testing.assert_frame_equal(run.organisms()[["rate", "act"]],
+                                                  world.table("organisms")[["rate", "act"]])
 
     def test_steps_stay_within_bounds_without_piling_up(self):
         for method, share in (("reflect", 0), ("redraw", 0), ("clamp", 0.2)):

@@ -10,12 +10,13 @@ import unittest
 
 import access_test as access
 import waiting
-from access_test import EVOD, c, plain
+from access_test import EVOCTL, EVOD, c, plain
 
 w = plain.w
 SMALL = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2}
+MATERIALS = ["steel", "wood, oak", "1"]
 LIST = [{"name": "angle", "min": -90, "max": 90}, {"name": "rate", "min": 0.001, "max": 1, "scale": "logarithmic"},
-        {"name": "layers", "min": 1, "max": 8, "step": 1}, {"name": "material", "choices": ["steel", "wood", "clay"]},
+        {"name": "layers", "min": 1, "max": 8, "step": 1}, {"name": "material", "choices": MATERIALS},
         {"name": "tour", "permutation": 6}]
 WORLDS = {
     "list": {**SMALL, "free_genes": LIST, "rearranging": "inversion", "rearrange_chance": 0.5,
@@ -86,8 +87,9 @@ class Genes(access.Access):
             genes = memoryview(copied.genes).cast("f")
             for row in range(12):
                 for column, gene in enumerate(client.world(name).gene_names):
-                    self.assertEqual(genes[column * 12 + row],
-                                     memoryview(struct.pack("f", float(original[12 + row][gene]))).cast("f")[0])
+                    text = original[12 + row][gene]
+                    value = MATERIALS.index(text) if gene == "material" else float(text)
+                    self.assertEqual(genes[column * 12 + row], memoryview(struct.pack("f", value)).cast("f")[0])
         text = pathlib.Path(self.folder, "free.csv").read_text()
         for content, there, expected in ((text, "[6]: got the gene free0", "allowed no gene"),
                                          (text.replace("free3", "free33"), "[9]: got the gene free33",
@@ -108,8 +110,47 @@ class Genes(access.Access):
             self.assertTrue(-90 <= float(row["angle"]) <= 90)
             self.assertTrue(0.000999 <= float(row["rate"]) <= 1)
             self.assertIn(float(row["layers"]), range(1, 9))
-            self.assertIn(float(row["material"]), range(3))
+            self.assertIn(row["material"], MATERIALS)
             self.assertEqual(sorted(float(row[f"tour{i}"]) for i in range(6)), list(range(6)))
+
+    def test_people_read_the_text_of_a_choice(self):
+        server, client = self.begin()
+        path = f"{self.folder}/organisms.jsonl"
+        self.evoctl("--world", "list", "export", "--what", "organisms", "--format", "jsonl", "--output", path,
+                    server=server)
+        lines = [json.loads(line) for line in pathlib.Path(path).read_text().splitlines()]
+        self.check_listed(lines)
+        organism = next(row for row in lines if row["generation"] == 2 and row["material"] == "wood, oak")
+        shown = self.evoctl("--world", "list", "organism", str(organism["organism"]), "--island",
+                            str(organism["island"]), "--at-generation", "2", server=server)
+        self.assertRegex(shown, "material +wood, oak\n")
+        self.assertRegex(self.evoctl("--world", "list", "best", server=server), "material +(steel|wood, oak|1)\n")
+        for text, there in (("wood, oak", "created"), ("0", "created"),
+                            ("gelu", "one of steel, wood, oak, 1 (column mat")):
+            names = list(client.world("list").gene_names)
+            row = [str(organism[name]) if name != "material" else f'"{text}"' for name in names]
+            population = self.file("one.csv", f"island,organism,{','.join(names)}\n0,0,{','.join(row)}\n")
+            said = self.evoctl("create", f"one{len(text)}", "--population", population, "--experiment",
+                               f"{self.folder}/list.json", server=server, status=2 if text == "gelu" else 0)
+            self.assertIn(there, said)
+            said = evod("run", f"{self.folder}/list.json", "--population", population, "--generations", 1,
+                        status=text == "gelu")
+            self.assertIn(there if text == "gelu" else "", said)
+
+    def test_history_without_bodies_is_not_about_life(self):
+        server = self.serve("--speed", "max")
+        experiment = self.file("rated.json", {"fitness": "external", "external_bodies": False, "population_size": 2})
+        self.evoctl("create", "rated", "--experiment", experiment, server=server)
+        self.come(server).call(run=c.Run(world="rated", generations=1))
+        rate = [EVOCTL, "--server", f"localhost:{server.port}", "--world", "rated", "rate",
+                self.file("fitness.txt", "1\n2\n")]
+        waiting.until(lambda: waiting.run(rate, capture_output=True).returncode == 0, "the end of generation 1")
+        for words in ("history",), ("stats",):
+            said = self.evoctl("--world", "rated", *words, server=server)
+            self.assertIn("BEST", said)
+            table = said[said.index("GENERATION"):]
+            self.assertNotIn("ALIVE", table)
+            self.assertNotIn("STARVED", table)
 
     def test_listed_genes_keep_to_their_values(self):
         server, client = self.begin()

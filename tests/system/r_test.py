@@ -16,6 +16,8 @@ import waiting
 EVOD = os.environ["EVOD"]
 LIBRARY = pathlib.Path(__file__).resolve().parents[2] / "client/r/evod.R"
 SEED = 2**64 - 3  # a number of R cannot hold it
+CHOICES = ["relu", "tanh", "1"]
+LIST = [{"name": "free0", "min": 0, "max": 1}, {"name": "free1", "choices": CHOICES}]
 SMALL = {"population_size": 12, "generation_s": 2, "island_count": 2}
 
 
@@ -35,7 +37,7 @@ class R(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.folder = pathlib.Path(folder.name)
-        (cls.folder / "small.json").write_text(json.dumps({**SMALL, "free_genes": 2}))
+        (cls.folder / "small.json").write_text(json.dumps({**SMALL, "free_genes": LIST}))
         cls.run_file = cls.folder / "small.evod"
         done(EVOD, "run", cls.folder / "small.json", "--seed", SEED, "--generations", 3, "--run-file", cls.run_file,
              "--csv", cls.folder / "run.csv")
@@ -71,12 +73,14 @@ class R(unittest.TestCase):
         exported = [row for row in rows_of(done(EVOD, "export", self.run_file, "--what", "organisms"))
                     if row["generation"] == "2"]
         rows = self.table(f"run <- open_run('{self.run_file}')", "run_organisms(run, 2)")
-        names = ("island", "organism", "body_size", "poison_radius", "free0", "free1", "fitness", "parent_first",
+        names = ("island", "organism", "body_size", "poison_radius", "free0", "fitness", "parent_first",
                  "parent_second")
         self.assertEqual([float(row["parent_first"]) for row in rows], [float(row["parent_first"]) for row in exported])
         for row in exported:  # genes are 32-bit floats, which the export writes with their shortest digits
-            row.update((gene, self.as_float32(row[gene])) for gene in names[2:6])
+            row.update((gene, self.as_float32(row[gene])) for gene in names[2:5])
         self.assert_equal_numbers(rows, exported, names)
+        self.assertEqual([row["free1"] for row in rows], [row["free1"] for row in exported])
+        self.assertLess(1, len({row["free1"] for row in rows} & set(CHOICES)))
 
     def as_float32(self, text):
         return struct.unpack("<f", struct.pack("<f", float(text)))[0]
@@ -108,7 +112,7 @@ class R(unittest.TestCase):
             figure.unlink()
         best = max(float(row["fitness_best"]) for row in rows_of((self.folder / "run.csv").read_text())
                    if row["generation"] == "3")
-        self.assertTrue(re.search(rf"^ +3 +{best:.3f}", printed, re.M), printed)
+        self.assertTrue(re.search(rf"^ +3 +{f'{best:.9f}'[:-7]}", printed, re.M), printed)
 
     def test_mistakes_are_named(self):
         for words, message in (([], "write: Rscript evod.R FILE"),

@@ -40,12 +40,12 @@ class Solution:
         return self.generation, self.island, self.organism
 
     def __repr__(self) -> str:
-        genes = ", ".join(f"{name} {value:.4g}" for name, value in self.genes.to_dict().items())
-        return f"<solution of generation {self.generation}: fitness {fitness_text(self.fitness)}, {genes}>"
+        text = self.genes.text()
+        return f"<solution of generation {self.generation}: fitness {fitness_text(self.fitness)}, {text}>"
 
     def _repr_html_(self) -> str:
         caption = f"fitness {fitness_text(self.fitness)}: organism {self.organism} of generation {self.generation}"
-        return html_table(("gene", "value"), self.genes.to_dict().items(), caption)
+        return html_table(("gene", "value"), self.genes.to_texts().items(), caption)
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -354,7 +354,7 @@ class Population:
             columns |= {"parent_first": self.parents[:, 0], "parent_second": self.parents[:, 1]}
         if len(self.founders):
             columns["founder"] = self.founders
-        return pandas().DataFrame(columns | self.genes.to_dict())
+        return pandas().DataFrame(columns | self.genes.to_texts())
 
 
 def gene_count_of(part: commands_pb2.Population) -> int | None:

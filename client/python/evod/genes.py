@@ -1,7 +1,7 @@
 """Genes as arrays with names."""
 from __future__ import annotations
 
-from typing import Any, Iterable, Iterator, Sequence, SupportsIndex, TypeVar, overload
+from typing import Any, Iterable, Iterator, Mapping, Sequence, SupportsIndex, TypeVar, overload
 
 import numpy
 
@@ -46,7 +46,7 @@ class Integer(Real):
 class Choice(dict[str, Any]):
     """One of several values in the list of the free genes: `evod.genes.Choice("material", ["steel", "wood"])`.
 
-    The gene is the index of the choice, from 0."""
+    The gene is the index of the choice, from 0. Tables contain the choice."""
 
     def __init__(self, name: str, choices: Iterable[object]) -> None:
         super().__init__(name=name, choices=[str(choice) for choice in choices])
@@ -58,6 +58,27 @@ class Permutation(dict[str, Any]):
 
     def __init__(self, name: str, count: int) -> None:
         super().__init__(name=name, permutation=count)
+
+
+class GeneNames(tuple[str, ...]):
+    """The names of the genes of a chromosome."""
+
+    choices: Mapping[str, Sequence[str]]  #: the choices of genes that contain the index of one, by name
+
+    def __new__(cls, names: Iterable[str], choices: Mapping[str, Sequence[str]] | None = None) -> GeneNames:
+        made = tuple.__new__(cls, names)
+        made.choices = getattr(names, "choices", {}) if choices is None else choices
+        return made
+
+    def text(self, name: str, value: Any) -> Any:
+        """Returns the choice whose index a gene contains; the value if it is not an index of a choice."""
+        choices = self.choices.get(name, ())
+        return choices[int(value)] if 0 <= value < len(choices) and value == int(value) else value
+
+    def value(self, name: str, text: Any) -> float:
+        """Returns the gene for the text of a choice or for a number. A choice has precedence over an index as text."""
+        choices = self.choices.get(name, ())
+        return float(choices.index(text) if isinstance(text, str) and text in choices else text)
 
 
 class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
@@ -81,11 +102,11 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
     True
     """
 
-    names: tuple[str, ...] | None  #: the names of the last axis; None for the results of calculations
+    names: GeneNames | None  #: the names of the last axis; None for the results of calculations
 
     def __new__(cls, values: Any, names: Iterable[str] = GENE_NAMES) -> Genes:
         genes = numpy.asarray(values).view(cls)
-        genes.names = tuple(names)
+        genes.names = GeneNames(names)
         if genes.shape[-1:] != (len(genes.names),):
             raise ValueError(f"values: got the shape {genes.shape}, allowed (…, {len(genes.names)}): one column for "
                              "each name")
@@ -125,10 +146,22 @@ class Genes(numpy.ndarray[Any, numpy.dtype[Any]]):
         """Returns the values by name: numbers, or arrays of shape (count,)."""
         return {name: self[name] for name in self.names or ()}
 
+    def to_texts(self) -> dict[str, Any]:
+        """Returns the values by name as tables contain them: like `to_dict`, but with the text of each choice."""
+        names = self.names or GeneNames(())
+        return {name: names.text(name, values) if numpy.ndim(values) == 0
+                else numpy.array([names.text(name, value) for value in values], object)
+                if name in names.choices else values for name, values in self.to_dict().items()}
+
     def __repr__(self) -> str:
         if self.names is None or self.ndim != 1:
             return repr(_plain(self)).replace("array", "Genes", 1)
-        return f"<genes {', '.join(f'{name} {value:.4g}' for name, value in self.to_dict().items())}>"
+        return f"<genes {self.text()}>"
+
+    def text(self) -> str:
+        """Returns the genes of one organism: "rate 0.25, material steel"."""
+        return ", ".join(f"{name} {value if isinstance(value, str) else format(value, '.4g')}"
+                         for name, value in self.to_texts().items())
 
     __str__ = __repr__
 
@@ -143,10 +176,10 @@ class ByGene(Sequence[T]):
     The elements are made when the first one is read, because a generation of many genes has many numbers.
     """
 
-    names: tuple[str, ...]  #: the names of the genes
+    names: GeneNames  #: the names of the genes
 
     def __init__(self, items: Iterable[T], names: Iterable[str] = GENE_NAMES) -> None:
-        self.names = tuple(names)
+        self.names = GeneNames(names)
         self._unread: Iterable[T] | None = items
         self._items: tuple[T, ...] = ()
 

@@ -12,12 +12,13 @@ from evod.conversion import result
 from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
 from evod.errors import Error, FailedPrecondition, NotFound, Unimplemented, Violation, copy_of, wrong_argument
 from evod.generations import Solution
-from evod.genes import Genes
+from evod.genes import GeneNames, Genes
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.plans import (
     build,
     gene_list,
     gene_names,
+    gene_names_of,
     GenerationStream,
     next_event,
     Plan,
@@ -176,7 +177,7 @@ class LabPlans:
         self, world: str, k: int, first: int | None, last: int | None, island: int | None, minimize: bool
     ) -> Plan[list[Solution]]:
         """Returns the k best organisms of ended generations, best first."""
-        names = (yield from world_info(world)).gene_names
+        names = gene_names_of((yield from world_info(world)))
         return (yield from solutions.hall_of_fame(world, names, k, first, last, island, minimize))
 
     def set_fitness(
@@ -236,7 +237,7 @@ class LabPlans:
             parameters=first,
             schedule=later,
             seed=seed,
-            population=[c.IslandPopulation(genes=numpy.asarray(genes, "<f4").ravel()) for genes in population or ()],
+            population=[c.IslandPopulation(genes=_numbers(genes, listed).ravel()) for genes in population or ()],
             population_gene_names=_gene_names_in(population),
             free_genes=gene_list(listed) if isinstance(listed, (list, tuple)) else None,
         )
@@ -345,6 +346,19 @@ def _gene_names_in(population: Sequence[numpy.typing.ArrayLike] | None) -> Seque
     return first.names or () if isinstance(first, Genes) else ()
 
 
+def _numbers(genes: numpy.typing.ArrayLike, listed: Any) -> numpy.typing.NDArray[Any]:
+    """Converts chromosomes to numbers. The genes of a list, which are the last ones, may be the texts of choices."""
+    array = numpy.asarray(genes)
+    if array.dtype.kind in "OU" and array.ndim == 2 and isinstance(listed, (list, tuple)):
+        array = array.astype(object)
+        columns = [gene.get("choices", ()) for gene in listed for _ in range(gene.get("permutation", 1))]
+        names = GeneNames((), {str(column): [str(choice) for choice in choices]
+                               for column, choices in enumerate(columns, array.shape[1] - len(columns))})
+        for (row, column), value in numpy.ndenumerate(array):
+            array[row, column] = names.value(str(column), value)
+    return numpy.asarray(array, "<f4")
+
+
 def _positions(field: str, positions: numpy.typing.ArrayLike) -> list[tuple[float, float]]:
     try:
         array = numpy.asarray(positions, float)
@@ -363,7 +377,8 @@ def _placed_organism(world: str, index: int, organism: tuple[float, float, objec
         x, y, genes = organism
         values = genes
         if isinstance(genes, Mapping):
-            values = [genes[name] for name in (yield from gene_names(world, len(genes)))]
+            names = yield from gene_names(world, len(genes))
+            values = [names.value(name, genes[name]) for name in names]
         numbers = numpy.asarray(values, "<f4").ravel()
         return c.PlacedOrganism(x_px=float(x), y_px=float(y), genes=numbers)
     except (KeyError, TypeError, ValueError):

@@ -119,14 +119,15 @@ class Front:
 
     def _columns(self) -> dict[str, Any]:
         numbers = {f"objective{i + 1}": column for i, column in enumerate(self.objectives.T)}
-        return {**numbers, **self.genes.to_dict()}
+        return {**numbers, **self.genes.to_texts()}
 
     def __repr__(self) -> str:
         return f"<front of {len(self)} organisms in generation {self.generation}>"
 
     def _repr_html_(self) -> str:
         columns = self._columns()
-        rows = [tuple(map(fitness_text, row)) for row in zip(*columns.values())]
+        rows = [tuple(cell if isinstance(cell, str) else fitness_text(cell) for cell in row)
+                for row in zip(*columns.values())]
         return html_table(tuple(columns), rows, repr(self)[1:-1])
 
 

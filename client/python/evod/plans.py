@@ -31,7 +31,7 @@ from evod.errors import (
     refusal,
     wrong_argument,
 )
-from evod.genes import GENE_NAMES, Genes
+from evod.genes import GENE_NAMES, GeneNames, Genes
 from evod.generations import Generation, History, Population, gene_count_of, generations_of, population_of
 from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
@@ -243,7 +243,7 @@ class GenerationStream:
         while True:
             generation, islands = self._to_rate
             while islands:
-                found = yield from population(self._world, islands.pop(0), self.info.gene_names)
+                found = yield from population(self._world, islands.pop(0), gene_names_of(self.info))
                 if found.generation == generation:
                     return found
                 islands.clear()  # another client has rated this generation
@@ -267,7 +267,7 @@ class GenerationStream:
             if number > self._next:
                 yield from self._fill(number - 1)
             if number >= self._next:
-                self._ready += generations_of(event.generation_finished.statistics, self.info.gene_names)
+                self._ready += generations_of(event.generation_finished.statistics, gene_names_of(self.info))
         elif kind == "fitness_awaited":
             self._awaited = event.fitness_awaited
         elif kind == "run_control_changed":
@@ -407,9 +407,15 @@ def gene_list(genes: Sequence[Mapping[str, object]]) -> world_pb2.FreeGeneList:
     return message
 
 
-def gene_names(world: str, count: int | None) -> Plan[Sequence[str]]:
+def gene_names_of(world: world_pb2.WorldInfo) -> GeneNames:
+    """Returns the names of the genes of a world, and their choices."""
+    return GeneNames(world.gene_names, {gene.name: tuple(gene.choices) for gene in world.free_genes.genes
+                                        if gene.choices})
+
+
+def gene_names(world: str, count: int | None) -> Plan[GeneNames]:
     """Returns the names of the genes of a world in which organisms had `count` genes; None: an unknown number."""
-    names: Sequence[str] = (yield from world_info(world)).gene_names
+    names = gene_names_of((yield from world_info(world)))
     if count not in (None, len(names)):
         raise NotFound(f"the world '{world}' was reset while its genes were requested")
     return names
@@ -446,8 +452,9 @@ def genes_of(snapshot: Snapshot) -> Plan[Genes]:
     else:  # the next generation has begun: the run file contains the genes
         text = yield from export(snapshot.world, "population", "csv", snapshot.generation, None)
         rows = [row for row in csv.DictReader(io.StringIO(text)) if int(row["island"]) == snapshot.island]
-        names = now.genes.names or GENE_NAMES
-        genes = Genes(numpy.array([[row[name] for name in names] for row in rows], numpy.float32), names)
+        names = now.genes.names or GeneNames(GENE_NAMES)
+        genes = Genes(numpy.array([[names.value(name, row[name]) for name in names] for row in rows], numpy.float32),
+                      names)
     if (yield from world_info(snapshot.world)).run_id != snapshot.run_id:
         raise NotFound(f"the world '{snapshot.world}' was reset before the genes of the snapshot were requested")
     return genes

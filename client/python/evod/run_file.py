@@ -21,7 +21,7 @@ import numpy.typing
 from evod import plotting
 from evod.errors import DamagedData, FileNotFound, NotFound
 from evod.program import Program, find_program
-from evod.genes import ACCOUNT_PARTS, GENE_NAMES, Genes
+from evod.genes import ACCOUNT_PARTS, GENE_NAMES, GeneNames, Genes
 from evod.tables import html_table, pandas, read_csv
 from evod.v1 import commands_pb2
 
@@ -133,9 +133,12 @@ class RunFile:
         return self._parameters_of(self.about["parameters"])
 
     @property
-    def gene_names(self) -> tuple[str, ...]:
+    def gene_names(self) -> GeneNames:
         """The names of the genes, in the order of all arrays."""
-        return tuple(self.about.get("gene_names", ",".join(GENE_NAMES)).split(","))
+        names = self.about.get("gene_names", ",".join(GENE_NAMES)).split(",")
+        listed = self.parameters.get("free_genes")
+        return GeneNames(names, {gene["name"]: gene["choices"] for gene in listed if "choices" in gene}
+                         if isinstance(listed, list) else {})
 
     @property
     def first_generation(self) -> int:
@@ -225,8 +228,8 @@ class RunFile:
         """Returns the genes of a generation as a DataFrame; by default, of the last generation that has begun."""
         parts = []
         for island, genes in enumerate(self.genes(generation)):
-            columns = dict(zip(self.gene_names, genes.T))
-            parts.append(pandas().DataFrame({"island": island, "organism": numpy.arange(len(genes)), **columns}))
+            columns = {"island": island, "organism": numpy.arange(len(genes)), **genes.to_texts()}
+            parts.append(pandas().DataFrame(columns))
         return pandas().concat(parts, ignore_index=True)
 
     def genes(self, generation: int | None = None) -> list[Genes]:
@@ -378,7 +381,7 @@ def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:
 
 
 def _organisms(
-    count: int, elite: int, survivors: int, genes: bytes, parents: bytes, gene_names: Sequence[str]
+    count: int, elite: int, survivors: int, genes: bytes, parents: bytes, gene_names: GeneNames
 ) -> dict[str, Any]:
     """Returns those columns of a population that are known when its generation begins."""
     chromosomes = _array(genes, "<f4", count * len(gene_names)).reshape(count, -1)
@@ -389,4 +392,5 @@ def _organisms(
     else:
         first = second = numpy.full(count, numpy.nan)
         origin = numpy.full(count, "initial", object)
-    return {"parent_first": first, "parent_second": second, "origin": origin, **dict(zip(gene_names, chromosomes.T))}
+    columns = Genes(chromosomes, gene_names).to_texts()
+    return {"parent_first": first, "parent_second": second, "origin": origin, **columns}

@@ -165,7 +165,7 @@ class Organisms(_Entities[Organism]):
         return Organisms(selected, genes, self._interval_s)
 
     def _table(self) -> dict[str, Any]:
-        genes = {} if self._genes is None else self._genes.to_dict()
+        genes = {} if self._genes is None else self._genes.to_texts()
         headings = {"heading": self.headings} if "heading" in self._columns else {}
         return super()._table() | headings | {"velocity_x_px_s": self.velocities[:, 0],
                                               "velocity_y_px_s": self.velocities[:, 1]} | genes

@@ -3,18 +3,18 @@ from __future__ import annotations
 
 import csv
 import io
-from typing import Mapping, Sequence
+from typing import Mapping
 
 import numpy
 
 from evod.errors import wrong_argument
 from evod.generations import Solution
-from evod.genes import Genes
+from evod.genes import GeneNames, Genes
 from evod.plans import Plan, export, history
 
 
 def hall_of_fame(
-    world: str, names: Sequence[str], k: int, first: int | None, last: int | None, island: int | None, minimize: bool
+    world: str, names: GeneNames, k: int, first: int | None, last: int | None, island: int | None, minimize: bool
 ) -> Plan[list[Solution]]:
     """Returns the k best organisms of ended generations, best first; of organisms with equal genes the first one.
 
@@ -47,7 +47,7 @@ def hall_of_fame(
     return list(found.values())
 
 
-def _solution(row: Mapping[str, str], names: Sequence[str], fitness: float, minimize: bool) -> Solution:
-    genes = Genes(numpy.array([float(row[name]) for name in names], numpy.float32), names)
+def _solution(row: Mapping[str, str], names: GeneNames, fitness: float, minimize: bool) -> Solution:
+    genes = Genes(numpy.array([names.value(name, row[name]) for name in names], numpy.float32), names)
     return Solution(genes, 0.0 - fitness if minimize else fitness, int(row["generation"]), int(row["island"]),
                     int(row["organism"]))

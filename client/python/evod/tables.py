@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import html
 import io
-from typing import Any, Iterable, Sequence
+from typing import Any, Collection, Iterable, Sequence
 
 import numpy
 
@@ -19,17 +19,17 @@ def pandas() -> Any:
     return module
 
 
-def read_csv(text: str, **options: Any) -> Any:
+def read_csv(text: str, choices: Collection[str] = (), **options: Any) -> Any:
     """Reads a table that evod wrote as CSV.
 
-    Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats. Parents
-    become whole numbers, <NA> for organisms without parents.
+    Floats are read exactly. Text columns stay text even if they look like numbers. Genes become 32-bit floats, and
+    those in `choices` text. Parents become whole numbers, <NA> for organisms without parents.
     """
     kinds: dict[str, Any] = {name: str for name in ("sender", "kind", "request", "origin", "cause")}
-    kinds |= {name: numpy.float32 for name in _genes_in(text)}
+    kinds |= {name: numpy.float32 for name in _genes_in(text) if name not in choices}
     kinds |= {f"parent_{which}{part}": "Int64" for which in ("first", "second")
               for part in ("", "_generation", "_island")}
-    chosen = {name: str for name in ("user", "program", "address")}  # text, also if it is empty or "NA"
+    chosen = {name: str for name in ("user", "program", "address", *choices)}  # text, also if it is empty or "NA"
     return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds, converters=chosen, **options)
 
 

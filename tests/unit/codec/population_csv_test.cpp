@@ -60,6 +60,22 @@ TEST(PopulationCsv, FurtherGenesHaveTheirNames) {
                 testing::EndsWith("allowed an island, an organism and 7 genes, so 9 cells, not 8"));
 }
 
+TEST(PopulationCsv, AGeneThatIsAChoiceMayBeItsTextOrItsIndex) {
+    v1::FreeGeneList list;
+    auto& act = *list.add_genes();
+    act.set_name("act");
+    for (const char* choice : {"relu", "a,b", "1", "16"}) {
+        act.add_choices(choice);
+    }
+    std::istringstream in{"rate,island,act,organism\n0.5,0,relu,0\n1,0,\"a,b\",1\n2,0, 16 ,2\n3,0,0,3\n4,0,1,4\n"};
+    const auto population = read_population(in, list);
+    ASSERT_TRUE(population) << population.error().what;
+    EXPECT_THAT(population->islands, ElementsAre(ElementsAre(0.5f, 0, 1, 1, 2, 3, 3, 0, 4, 2)));
+    std::istringstream other{"island,organism,act\n0,0,gelu\n"};
+    EXPECT_EQ(read_population(other, list).error().what,
+              "line 2: got \"0,0,gelu\", allowed one of relu, a,b, 1, 16 (column act)");
+}
+
 TEST(PopulationCsv, ChromosomesMayHaveNoGenesOfTheBody) {
     const auto population = read("organism,free1,island,free0\n0,2,0,1\n");
     ASSERT_TRUE(population) << population.error().what;

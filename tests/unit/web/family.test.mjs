@@ -181,6 +181,10 @@ test("the colours name lineages and scales", () => {
   table.add(["island,organism,speed,size", "0,0,1.5,2", "0,1,2.5,4"]);
   genes.set(3, table.islands);
   assert.equal(genes.value(root(1), 1), 4);
+  const choices = new family.PopulationReader(new Map([["act", ["relu", "1", "a,b"]]]));
+  choices.add(["island,organism,rate,act", '0,0,1,"a,b"']);
+  choices.add(["0,1,2,1"]);
+  assert.deepEqual(choices.islands.get(0), [Float32Array.of(1, 2), Float32Array.of(2, 1)]);
   const { least, most, unknown } = family.colouring_of(tree, { kind: "gene", gene: 0 }, genes).legend;
   assert.deepEqual([least, most, unknown], [1.5, 2.5, 6]);
 });

@@ -37,10 +37,14 @@ test("a file of another program is read as evod reads it", () => {
   }
 });
 
-test("a choice is read as a text and as an index", () => {
-  const choices = new Map([["act", ["relu", "tanh", "1", "16"]]]);
-  assert.deepEqual(page.read_population("island,organism,act\n0,0,tanh\n0,1,0\n0,2,1\n0,3,16\n", choices).islands, [Float32Array.of(1, 0, 1, 3)]);
-  assert.match(page.read_population("island,organism,act\n0,0,gelu\n", choices), /^line 2: got "0,0,gelu", allowed: a number, or one of relu, tanh, 1, 16 \(column act\)$/);
+test("a choice is read as a text and as an index, and written as a text", () => {
+  const choices = new Map([["act", ["relu", "tanh", "1", "16", "a,b"]]]);
+  assert.deepEqual(page.read_population("island,organism,act\n0,0,tanh\n0,1,0\n0,2,1\n0,3,16\n0,4,3\n", choices).islands, [Float32Array.of(1, 0, 2, 3, 3)]);
+  const population = { gene_names: ["rate", "act"], islands: [Float32Array.of(1, 2, 0.5, 4)] };
+  const text = page.population_text(population, choices);
+  assert.equal(text, 'island,organism,rate,act\n0,0,1,1\n0,1,0.5,"a,b"\n');
+  assert.deepEqual(page.read_population(text, choices), population);
+  assert.match(page.read_population("island,organism,act\n0,0,gelu\n", choices), /^line 2: got "0,0,gelu", allowed: a number, or one of relu, tanh, 1, 16, a,b \(column act\)$/);
 });
 
 test("a wrong file names the line, what it contains and what is allowed", () => {

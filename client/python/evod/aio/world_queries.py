@@ -110,7 +110,7 @@ class WorldQueries:
     async def statistics(self) -> Statistics:
         """Returns the live statistics of each island, and the statistics of the last generation that has ended."""
         answer = (await self._request("get_statistics")).statistics
-        statistics: Statistics = result(answer, answer.world.gene_names)
+        statistics: Statistics = result(answer, plans.gene_names_of(answer.world))
         return statistics
 
     async def history(
@@ -272,7 +272,10 @@ class WorldQueries:
 
     async def table(self, table: str, *, generation: int | None = None, of: tuple[int, int, int] | None = None) -> Any:
         """Returns the table of `export` as a pandas DataFrame."""
-        return tables.read_csv(await self.export(table, generation=generation, of=of))
+        text = await self.export(table, generation=generation, of=of)
+        has_genes = table in ("organisms", "population")
+        choices = (await self._link.perform(plans.gene_names(self.name, None))).choices if has_genes else ()
+        return tables.read_csv(text, choices)
 
     # ---- plots ----------------------------------------------------------------------------------------------------
 

@@ -1,4 +1,5 @@
 // FamilyData: the organisms and genes that the panel "family" has loaded, and what is still being loaded. No DOM.
+import type {GeneChoices} from "../world/gene_axes";
 import type {Server} from "../world/server";
 import {GeneTable} from "./gene_table";
 import {name_key, type OrganismName} from "./lineage";
@@ -14,6 +15,7 @@ export interface Subject {
 export interface Source {
   server: Server;
   world: string; // shows the run; may be a replay
+  choices: GeneChoices;
 }
 
 function key_of({run_id, whole, root}: Subject): string {
@@ -93,7 +95,7 @@ export class FamilyData {
       for (let generation = last; generation > last - all; --generation) {
         this.gene_progress = {loaded: last - generation, all, limited};
         if (!this.genes.has(generation)) {
-          await load_genes(source.server, source.world, generation, this.genes);
+          await load_genes(source.server, source.world, generation, source.choices, this.genes);
           if (number !== this.#number || wanted !== this.#genes_wanted) {
             return;
           }

@@ -1,5 +1,8 @@
 // GeneTable: the genes of whole generations, read from the population table as CSV. Organisms that a user placed are
 // not in that table. No DOM.
+import {csv_records, CsvError} from "../core/csv";
+import {gene_of_text, type GeneChoices} from "../world/gene_axes";
+
 import type {OrganismName} from "./lineage";
 
 export class GeneTable {
@@ -21,16 +24,23 @@ export class GeneTable {
 
 /** Reads the population table of one generation: its columns are island, organism and the genes. */
 export class PopulationReader {
-  #has_heading = false;
+  #heading: readonly string[]|null = null;
   #rows = new Map<number, number[][]>(); // by island: the genes of each organism
 
+  /** choices  of the world */
+  constructor(private readonly choices: GeneChoices = new Map()) {}
+
   add(lines: readonly string[]): void {
-    for (const line of lines) {
-      if (!this.#has_heading) {
-        this.#has_heading = true;
+    for (const record of csv_records(lines.join("\n"))) {
+      if (record instanceof CsvError) {
+        return;
+      }
+      if (this.#heading === null) {
+        this.#heading = record.cells.slice(2);
         continue;
       }
-      const [island, organism, ...genes] = line.split(",").map(Number) as [number, number, ...number[]];
+      const [island, organism] = record.cells.map(Number) as [number, number];
+      const genes = this.#heading.map((name, i) => gene_of_text(record.cells[i + 2]!, this.choices.get(name)));
       if (!this.#rows.has(island)) {
         this.#rows.set(island, []);
       }

@@ -1,4 +1,5 @@
 // Loading: reads the lineage and the genes of a run from the server, and limits how much is read. No DOM.
+import type {GeneChoices} from "../world/gene_axes";
 import {read_export, type ReadExport} from "../world/run_export";
 import type {Server} from "../world/server";
 import {GeneTable, PopulationReader} from "./gene_table";
@@ -25,8 +26,9 @@ export async function load_lineage(
 }
 
 /** Adds the genes of one generation to the table. */
-export async function load_genes(server: Server, world: string, generation: number, table: GeneTable): Promise<void> {
-  const reader = new PopulationReader();
+export async function load_genes(
+  server: Server, world: string, generation: number, choices: GeneChoices, table: GeneTable): Promise<void> {
+  const reader = new PopulationReader(choices);
   await read_export(
     server, {world, table: "RUN_TABLE_POPULATION", format: "TEXT_FORMAT_CSV", generation},
     (lines) => reader.add(lines));

@@ -5,12 +5,13 @@
 //   0,0,103.2,97.5,…
 //
 // There is a column for each gene. evod numbers islands and organisms from 0, in order. Each gene is a text that parses
-// to the same 32-bit float. A gene that is a choice may be the text of the choice.
+// to the same 32-bit float. A gene that is a choice is the text of the choice; its index is read, too.
 //
 // A file that another program has changed may have what population_csv.h describes: columns in any order, blanks,
 // quotes, empty rows, other separators, a decimal comma, and islands that need not count from 0.
 import {csv_line, csv_records, CsvError, separator_of} from "../core/csv";
 import {freezer_texts} from "../texts/freezer";
+import {gene_of_text, type GeneChoices} from "../world/gene_axes";
 
 export interface Population {
   gene_names: string[]; // at least one
@@ -42,9 +43,6 @@ interface Columns {
   gene_names: string[];
 }
 
-/** The texts of the genes that are choices, by name. */
-export type GeneChoices = ReadonlyMap<string, readonly string[]>;
-
 /** Returns where the columns are; null if this is not a heading. A first column without a name is ignored: R writes the
  *  names of the rows there. */
 function read_heading(cells: readonly string[]): Columns|null {
@@ -60,13 +58,12 @@ function read_heading(cells: readonly string[]): Columns|null {
   return {island, organism, count: cells.length, genes, gene_names: genes.map((column) => names[column]!)};
 }
 
-/** Returns a gene; NaN if the cell is neither a 32-bit float nor a choice. The index of a choice has precedence over a
- *  choice with the same text, because evod writes the index. */
+/** Returns a gene; NaN if the cell is neither a 32-bit float nor a choice. */
 function read_gene(cell: string, separator: string, choices: readonly string[]): number {
-  const text = cell.trim(), choice = choices.indexOf(text);
+  const text = choices.includes(cell) ? cell : cell.trim();
   const number = separator === "," ? text : text.replaceAll(",", ".");
-  const value = number_pattern.test(number) ? Math.fround(Number(number)) : NaN;
-  return choice >= 0 && choices[value] === undefined ? choice : value;
+  const is_readable = choices.includes(text) || number_pattern.test(number);
+  return is_readable ? Math.fround(gene_of_text(choices.includes(text) ? text : number, choices)) : NaN;
 }
 
 /** Returns the first wrong column of a row, and adds its genes to `genes`; "" if none is wrong. */
@@ -132,13 +129,17 @@ export function read_population(text: string, choices: GeneChoices = new Map()):
     {gene_names: columns.gene_names, islands: in_order.map((island) => Float32Array.from(islands.get(island)!))};
 }
 
-/** Returns the text of a file with these genes. */
-export function population_text(population: Population): string {
+/** Returns the text of a file with these genes.
+ *
+ *  choices  of the world from which they come; without them, the file contains the indices */
+export function population_text(population: Population, choices: GeneChoices = new Map()): string {
   const {gene_names, islands} = population, count = gene_names.length;
   const lines = [csv_line(["island", "organism", ...gene_names])];
   islands.forEach((genes, island) => {
     for (let organism = 0; organism * count < genes.length; ++organism) {
-      const texts = Array.from(genes.subarray(organism * count, (organism + 1) * count), float_text);
+      const texts = Array.from(
+        genes.subarray(organism * count, (organism + 1) * count),
+        (value, gene) => choices.get(gene_names[gene]!)?.[value] ?? float_text(value));
       lines.push(csv_line([island, organism, ...texts]));
     }
   });

@@ -2,7 +2,7 @@
 import {csv_records, CsvError} from "../core/csv";
 import {gene_name} from "../texts/genes";
 import {shown_number} from "../texts/numbers";
-import {gene_axes} from "../world/gene_axes";
+import {gene_axes, gene_choices, gene_of_text} from "../world/gene_axes";
 import type {EndedGeneration} from "../world/history";
 import {read_export} from "../world/run_export";
 import type {ViewedWorld} from "../world/world";
@@ -27,6 +27,7 @@ function shown_genes(world: ViewedWorld, {generation, island, best_organism = 0}
 /** The genes by name from the run file; null if it does not contain the organism. Rejects with a refusal. */
 async function stored_genes(world: ViewedWorld, {generation, island, best_organism = 0}: EndedGeneration):
   Promise<ReadonlyMap<string, number>|null> {
+  const choices = gene_choices(world.info);
   let heading: string[]|null = null, found: ReadonlyMap<string, number>|null = null;
   const take = (lines: string[]): void => {
     for (const record of csv_records(lines.join("\n"))) {
@@ -36,7 +37,7 @@ async function stored_genes(world: ViewedWorld, {generation, island, best_organi
       if (heading === null) {
         heading = record.cells;
       } else if (Number(record.cells[0]) === island && Number(record.cells[1]) === best_organism) {
-        found = new Map(heading.map((name, i) => [name, Number(record.cells[i])]));
+        found = new Map(heading.map((name, i) => [name, gene_of_text(record.cells[i]!, choices.get(name))]));
       }
     }
   };

@@ -6,6 +6,7 @@ import type {OrganismName} from "../family/lineage";
 import {ShownTree} from "../family/shown_tree";
 import type {FamilyTree, Place} from "../family/spot";
 import {place_of} from "../family/tree";
+import {gene_choices} from "../world/gene_axes";
 import {origin_run_of} from "../world/origin";
 import {family_texts} from "../texts/family";
 import {h, set_text} from "../widgets/dom";
@@ -130,7 +131,8 @@ export class FamilyPanel implements Panel {
   }
 
   #load(world: ViewedWorld): void {
-    const source = {server: world.server, world: world.shown}, subject = this.#subject, tree = this.#shown.tree;
+    const source = {server: world.server, world: world.shown, choices: gene_choices(world.info)};
+    const subject = this.#subject, tree = this.#shown.tree;
     const organisms = (world.snapshot?.live?.organism_count ?? 0) * Math.max(1, world.info?.island_count ?? 1);
     if (subject) {
       this.#data.want(source, subject, this.#choices.form.generations, organisms);

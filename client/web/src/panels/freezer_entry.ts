@@ -7,6 +7,7 @@ import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {save_file} from "../widgets/files";
 import {button, Question, row, text_field} from "../widgets/form";
+import {gene_choices} from "../world/gene_axes";
 import {name_characters_max} from "../world/names";
 import type {PanelContext} from "../world/panel_context";
 
@@ -26,7 +27,7 @@ export class FreezerEntry {
   readonly #genes = new FreezerGenes();
   readonly #title = h("h3", {});
   readonly #create: HTMLButtonElement;
-  readonly #download = button(texts.download, () => save(this.#shown!));
+  readonly #download = button(texts.download, () => this.#save(this.#shown!));
   readonly #rename = button(texts.rename, () => this.#ask_rename());
   readonly #remove = button(texts.remove, () => this.#ask_remove());
   readonly #new_name = text_field(texts.new_name, {maxlength: name_characters_max});
@@ -122,6 +123,13 @@ export class FreezerEntry {
     this.#choose("");
   }
 
+  /** The file contains the texts of choices if the entry comes from the shown world, whose choices are known. */
+  #save({kept, population}: ShownEntry): void {
+    const {name, info} = this.#context.world(), {origin} = kept;
+    const choices = "world" in origin && origin.world === name ? gene_choices(info) : undefined;
+    save_file(new Blob([population_text(population, choices)], {type: "text/csv"}), `${kept.name}.csv`);
+  }
+
   async #act(what: () => Promise<void>): Promise<void> {
     set_text(this.#problem, "");
     try {
@@ -130,8 +138,4 @@ export class FreezerEntry {
       set_text(this.#problem, (error as Error).message);
     }
   }
-}
-
-function save({kept, population}: ShownEntry): void {
-  save_file(new Blob([population_text(population)], {type: "text/csv"}), `${kept.name}.csv`);
 }

@@ -36,9 +36,18 @@ function axes_of({name = "", min = 0, max = 0, logarithmic = false, choices = []
 }
 
 /** The texts of the genes that are choices, by name. */
-export function gene_choices(info: WorldInfo|null): ReadonlyMap<string, readonly string[]> {
+export type GeneChoices = ReadonlyMap<string, readonly string[]>;
+
+export function gene_choices(info: WorldInfo|null): GeneChoices {
   const listed = info?.free_genes?.genes ?? [];
   return new Map(listed.flatMap(({name = "", choices}) => choices ? [[name, choices]] : []));
+}
+
+/** The gene for a cell of a table: the index of a choice, or a number. The text of a choice has precedence over an
+ *  index, because evod writes the text. */
+export function gene_of_text(text: string, choices: readonly string[] = []): number {
+  const choice = choices.indexOf(text);
+  return choice >= 0 ? choice : Number(text);
 }
 
 /** "relu" for a choice, "0.01" for a number. */
