@@ -8,7 +8,7 @@
 
 // client/web/assets.S defines each file as NAME and its end as NAME_end.
 #define WEB_FILE(name, path, type, file) extern "C" const char name[], name##_end[];
-#include "web_files.inc"
+#include <web_files.inc>
 #undef WEB_FILE
 
 #endif
@@ -33,7 +33,7 @@ WebAsset asset(std::string_view path, std::string_view type, const char* begin, 
 const std::vector<WebAsset>& all_assets() {
     static const std::vector<WebAsset> all = {
 #define WEB_FILE(name, path, type, file) asset(path, type, name, name##_end),
-#include "web_files.inc"
+#include <web_files.inc>
 #undef WEB_FILE
     };
     return all;

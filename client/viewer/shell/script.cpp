@@ -182,7 +182,7 @@ const Verb verbs[] = {
     {"type", "TEXT", "types text into the field that has the keyboard focus", 1, 1,
      [](ScriptLine& line) -> core::Result<Acts> { return acts::type(line.words[1]); }},
     {"click", "NAME",
-     "clicks on a widget, named by the text on it or beside it; or on the island: organism NUMBER, or at X,Y with "
+     "clicks on a widget, named by the text on it or next to it; or on the island: organism NUMBER, or at X,Y with "
      "fractions of its width and height",
      1, 2, parse_click},
     {"menu", "NAME", "clicks on a widget with the right button, which opens its menu", 1, 1,

@@ -25,6 +25,16 @@ WIDTH, HEIGHT = 1280, 720
 WAIT_S = 300  # for one step of the browser, on a machine that is busy with other work
 
 
+def started(options, tries=3):
+    """Another program may take the port that Selenium has found for the driver."""
+    try:
+        return webdriver.Chrome(service=Service(DRIVER), options=options)
+    except WebDriverException:
+        if tries == 1:
+            raise
+        return started(options, tries - 1)
+
+
 class Browser:
     """introduces: the page shows its introduction, as to a new visitor."""
 
@@ -38,7 +48,7 @@ class Browser:
         if os.geteuid() == 0:
             options.add_argument("--no-sandbox")  # Chromium has none for root
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
+        self.driver = started(options)
         atexit.register(self.close)  # if the test is terminated
         self.driver.set_page_load_timeout(WAIT_S)
         self.driver.set_script_timeout(WAIT_S)

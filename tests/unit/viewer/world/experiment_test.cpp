@@ -2,13 +2,16 @@
 
 #include "tests/unit/viewer/world/viewed_world_fixture.h"
 
+#include <memory>
+
 namespace evod::viewer {
 namespace {
 
 struct ExperimentTest : ViewedWorldTest {
     /// Whether organisms have bodies in a world with these parameters.
     bool has_bodies(const std::string& fitness, bool external_bodies) {
-        ViewedWorld world{wanted()};
+        auto owned = std::make_unique<ViewedWorld>(wanted());
+        ViewedWorld& world = *owned;
         core::FakeSession session = begin(world);
         until(world, [&] { return session.unread_bytes() > 0; });
         answer_statistics(session, session.read_request());
@@ -33,6 +36,7 @@ struct ExperimentTest : ViewedWorldTest {
         second.mutable_value()->set_flag(external_bodies);
         session.send(message);
         until(world, [&] { return !experiment.text().empty(); });
+        owned.reset(); // before the session ends, or else it connects again, and the next session is that one
         return experiment.has_bodies();
     }
 };
