@@ -85,12 +85,13 @@ class Description:
             return world_pb2.ParameterValue(flag=bool(value)) if is_flag else None
         if is_flag or isinstance(value, str):
             return None
+        number: Any = value
         try:
             if self.kind == "count":
                 whole = isinstance(value, (float, numpy.floating)) and float(value).is_integer()
-                count = operator.index(int(value) if whole else value)  # type: ignore[call-overload]
+                count = operator.index(int(number) if whole else number)
                 return world_pb2.ParameterValue(count=count) if self.min <= count <= self.max else None
-            real = float(value)  # type: ignore[arg-type]
+            real = float(number)
         except (TypeError, ValueError, OverflowError):
             return None
         return world_pb2.ParameterValue(real=real) if math.isfinite(real) and self.min <= real <= self.max else None

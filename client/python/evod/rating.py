@@ -100,7 +100,8 @@ class Rater:
             genes[rated] = repaired
             keys = _keys_of(genes)
             whole = numpy.asarray(genes)
-        self._now[1].update(zip(keys, fitness.tolist()))
+        values: Any = fitness.tolist()  # its type differs between versions of NumPy
+        self._now[1].update(zip(keys, values))
         if self._objectives > 1:
             self._parts.append((genes, fitness))
         else:
@@ -182,7 +183,8 @@ class Rater:
     def _remember(self, keys: Sequence[bytes], fitness: Array, life: Life) -> None:
         costs = fitness if self.minimize else -fitness
         last = next(reversed(self._hall.values())).cost if len(self._hall) >= HALL_MAX else math.inf
-        for place, i in enumerate(numpy.argsort(costs, kind="stable")[:HALL_MAX].tolist()):
+        best: Any = numpy.argsort(costs, kind="stable")[:HALL_MAX].tolist()
+        for place, i in enumerate(best):
             found = _Rated(float(costs[i]), float(fitness[i]), life.generation, life.island, i)
             if place == 0 and (self._best is None or self._best[1].generation != life.generation
                                or found.cost < self._best[1].cost):
@@ -200,7 +202,8 @@ class Rater:
 
 def _keys_of(genes: Genes) -> list[bytes]:
     """The bytes of each chromosome."""
-    keys: list[bytes] = numpy.ascontiguousarray(genes).view(f"V{genes.itemsize * genes.shape[1]}").ravel().tolist()
+    rows: Any = numpy.ascontiguousarray(genes).view(f"V{genes.itemsize * genes.shape[1]}").ravel().tolist()
+    keys: list[bytes] = rows
     return keys
 
 
