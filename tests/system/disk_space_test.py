@@ -67,7 +67,7 @@ class DiskSpace(past.Case):
 
         self.assertEqual(metric("evod_disk_bytes_max"), 1 << 30)
         self.assertGreater(metric('evod_world_bytes{world="default"}'), 4096)
-        filler = pathlib.Path(self.folder, "default.0000000000000001.evod")  # an ended run
+        filler = pathlib.Path(self.folder, f"default.{1:032x}.evod")  # an ended run
 
         def fill():
             with filler.open("wb") as file:
@@ -79,7 +79,7 @@ class DiskSpace(past.Case):
         plain.until(lambda: "contains more than --disk-max allows, 1073741824 bytes: delete old runs with evod prune"
                     in server.output(), "the quota")
         self.assertGreater(metric("evod_disk_bytes"), 1 << 30)
-        self.assertEqual(metric('evod_storage_state{state="failing"}'), 1)
+        plain.until(lambda: metric('evod_storage_state{state="failing"}') == 1, "the state in the metrics")
         refused = client.call(c.CODE_UNAVAILABLE, set_parameters=plain.set_parameters("default", food_health=7.0))
         self.assertIn("--disk-max", refused.status.message)
         self.assertNotIn(self.folder, refused.status.message)

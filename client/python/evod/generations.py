@@ -316,7 +316,8 @@ class Life:
 
     def of(self, rows: numpy.typing.NDArray[numpy.bool_]) -> Life:
         """The life of some of the organisms. `rows` is a mask."""
-        columns: dict[str, Any] = {name: value[rows] for name, value in vars(self).items() if isinstance(value, numpy.ndarray)}
+        columns: dict[str, Any] = {name: value[rows] for name, value in vars(self).items()
+                                   if isinstance(value, numpy.ndarray)}
         return dataclasses.replace(self, **columns)
 
     def __repr__(self) -> str:

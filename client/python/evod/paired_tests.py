@@ -25,8 +25,8 @@ def sign_flip_p(differences: Sequence[float] | Array, seed: int = 1) -> float:
         patterns = list(itertools.product((1.0, -1.0), repeat=len(values) - 1))
         signs = numpy.array(patterns).reshape(len(patterns), len(values) - 1)
         return float((numpy.abs(values[-1] + signs @ values[:-1]) >= least).mean())
-    signs = numpy.random.default_rng(seed).choice((1.0, -1.0), size=(_DRAWN, len(values)))
-    return float((1 + (numpy.abs(signs @ values) >= least).sum()) / (_DRAWN + 1))
+    drawn = numpy.random.default_rng(seed).choice((1.0, -1.0), size=(_DRAWN, len(values)))
+    return float((1 + (numpy.abs(drawn @ values) >= least).sum()) / (_DRAWN + 1))
 
 
 def holm(p: Sequence[float]) -> list[float]:

@@ -7,7 +7,7 @@ import difflib
 import math
 import operator
 import re
-from typing import Iterator, Mapping, Union
+from typing import Any, Iterator, Mapping, Union
 
 import numpy
 
