@@ -9,6 +9,8 @@ Role role_needed(const v1::RequestRules& rules, bool in_own_replay) {
     switch (rules.role()) {
     case v1::ROLE_VIEWER:
         return Role::Viewer;
+    case v1::ROLE_TEACHER:
+        return Role::Teacher;
     case v1::ROLE_CONTROLLER:
         return Role::Controller;
     default:

@@ -6,6 +6,8 @@ const char* name_of(Role role) {
     switch (role) {
     case Role::Viewer:
         return "viewer";
+    case Role::Teacher:
+        return "teacher";
     case Role::Controller:
         return "controller";
     case Role::Admin:
@@ -15,7 +17,7 @@ const char* name_of(Role role) {
 }
 
 std::optional<Role> role_named(std::string_view name) {
-    for (const Role role : {Role::Viewer, Role::Controller, Role::Admin}) {
+    for (const Role role : {Role::Viewer, Role::Teacher, Role::Controller, Role::Admin}) {
         if (name == name_of(role)) {
             return role;
         }
@@ -27,6 +29,8 @@ v1::Role to_proto(Role role) {
     switch (role) {
     case Role::Viewer:
         return v1::ROLE_VIEWER;
+    case Role::Teacher:
+        return v1::ROLE_TEACHER;
     case Role::Controller:
         return v1::ROLE_CONTROLLER;
     case Role::Admin:

@@ -33,6 +33,15 @@ std::string to_bytes(const RunId& id);
 using Speed = std::optional<double>;
 constexpr double speed_min = 0.001, speed_max = 10'000;
 
+/// To whom a world belongs. It does not influence what happens in the world.
+struct Ownership {
+    std::string user;       // the owner; empty: no user
+    std::string class_name; // the class to which the world belongs; empty: none
+    std::string teacher;    // the user who may control all worlds of the class; empty: none
+
+    friend bool operator==(const Ownership&, const Ownership&) = default;
+};
+
 struct CreateWorld {
     std::string name; // 1 to 64 of a-z A-Z 0-9 _ -
     parameters::Parameters parameters;
@@ -40,6 +49,8 @@ struct CreateWorld {
     RunId run_id;
     FirstPopulation first_population = {}; // valid for these parameters
     parameters::Schedule schedule = {};    // without faults (faults_of()); generation 1 as in `parameters`
+    Ownership ownership = {};
+    bool frozen = false; // as after FreezeWorld
 };
 struct DeleteWorld {
     std::string world;
@@ -69,6 +80,17 @@ struct Pause {
 };
 struct Resume {
     std::string world;
+};
+/// Stops a world, or lets it go on, whatever its goals and its pause are.
+struct FreezeWorld {
+    std::string world;
+    bool frozen;
+};
+/// A text for the journal. It changes nothing in the world.
+struct AddNote {
+    std::string world;
+    std::string kind; // 1 to 32 of a-z 0-9 _
+    std::string text; // 1 to 4,096 bytes of UTF-8
 };
 struct SetSpeed {
     std::string world;
@@ -148,10 +170,11 @@ struct ForkWorld {
     // the fork starts at the present state of `world`.
     std::optional<std::uint64_t> at_generation;
     RunId run_id;
+    Ownership ownership = {};
 };
 
 using Command =
-    std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume, SetSpeed,
-                 SetParameters, CancelChange, PlaceEntities, RemoveEntities, SetFitness, ForkWorld>;
+    std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume, FreezeWorld,
+                 AddNote, SetSpeed, SetParameters, CancelChange, PlaceEntities, RemoveEntities, SetFitness, ForkWorld>;
 
 } // namespace evod::simulation

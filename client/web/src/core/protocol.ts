@@ -140,6 +140,9 @@ export interface ParameterState {
   /** The value that takes effect with the next generation or reset, or, before the first tick of a generation, with that
    *  tick. Absent if it equals `value`. */
   pending?: ParameterValue;
+  /** The range in this world, where the quota of its class is narrower than ParameterDescription's. */
+  min?: number;
+  max?: number;
 }
 
 /** The cause of a change. Clients with the role viewer receive only `kind` and `user`. */
@@ -288,6 +291,12 @@ export interface WorldInfo {
   slowed?: boolean;
   /** The generation has ended, and the world waits until clients have sent fitness. Absent: the world needs no fitness. */
   awaited_fitness?: AwaitedFitness;
+  /** The user who may control the world whatever the user's role is; empty: the world belongs to no user. */
+  owner?: string;
+  /** the class to which the world belongs; empty: none */
+  class?: string;
+  /** the teacher has frozen the class: the world does not advance, whatever `state` is */
+  frozen?: boolean;
 }
 
 /** A free gene with rules of its own. Numbers and choices are one gene; a permutation is `permutation` genes, which contain
@@ -692,13 +701,15 @@ export interface EventKinds {
   fitness_awaited: AwaitedFitness;
   fitness_set: FitnessSet;
   world_damaged: WorldDamaged;
+  class_changed: ClassChanged;
+  note_added: NoteAdded;
 }
 
 /** The names in EventKinds. */
 export const event_kinds: readonly (keyof EventKinds)[] = ["generation_finished", "parameters_changed",
   "run_control_changed", "migration", "extinction", "run_terminated", "world_created", "world_reset", "world_deleted",
   "server_going_away", "events_dropped", "storage_changed", "change_dropped", "change_planned", "change_cancelled",
-  "placed", "removed", "fitness_awaited", "fitness_set", "world_damaged"
+  "placed", "removed", "fitness_awaited", "fitness_set", "world_damaged", "class_changed", "note_added"
 ];
 
 export interface Event extends Partial<EventKinds> {
@@ -718,6 +729,18 @@ export interface Event extends Partial<EventKinds> {
 export interface GenerationFinished {
   /** one per island */
   statistics?: GenerationStatistics[];
+}
+
+/** A class has changed, or a member has connected or gone. Only its teacher, controllers and admins receive the event. They
+ *  read the class with ListClasses. */
+export interface ClassChanged {
+  class?: string;
+}
+
+export interface NoteAdded {
+  by?: Actor;
+  kind?: string;
+  text?: string;
 }
 
 /** A client has sent fitness of organisms on one island. */
@@ -836,19 +859,22 @@ export interface EventsDropped {
  *  REQUEST_KIND_REPLAY: opens, moves or closes a replay of this session
  *  REQUEST_KIND_EXPORT: reads a table of a stored run as text
  *  REQUEST_KIND_LEASE: renews the lease of this client_key
- *  REQUEST_KIND_SERVER: shuts the server down */
+ *  REQUEST_KIND_SERVER: shuts the server down
+ *  REQUEST_KIND_CLASS: reads or changes classes; not in the journal, but durable before its answer */
 export type RequestKind = "REQUEST_KIND_UNSPECIFIED"|"REQUEST_KIND_COMMAND"|"REQUEST_KIND_QUERY"|
-  "REQUEST_KIND_SUBSCRIPTION"|"REQUEST_KIND_REPLAY"|"REQUEST_KIND_EXPORT"|"REQUEST_KIND_LEASE"|"REQUEST_KIND_SERVER";
+  "REQUEST_KIND_SUBSCRIPTION"|"REQUEST_KIND_REPLAY"|"REQUEST_KIND_EXPORT"|"REQUEST_KIND_LEASE"|"REQUEST_KIND_SERVER"|
+  "REQUEST_KIND_CLASS";
 
 /** The permissions of a session. Each role includes the permissions of the roles before it.
  *  ROLE_VIEWER: may send queries, subscriptions, exports and replay requests
+ *  ROLE_TEACHER: may also create classes, and control the worlds of these classes
  *  ROLE_CONTROLLER: May also control and reset worlds, set their parameters and fitness, and place and remove items
  *    and organisms.
  *  ROLE_ADMIN: may also create, fork and delete worlds, and shut the server down */
-export type Role = "ROLE_UNSPECIFIED"|"ROLE_VIEWER"|"ROLE_CONTROLLER"|"ROLE_ADMIN";
+export type Role = "ROLE_UNSPECIFIED"|"ROLE_VIEWER"|"ROLE_TEACHER"|"ROLE_CONTROLLER"|"ROLE_ADMIN";
 
 /** The kind of a refusal. The numbers are those of google.rpc.Code.
- *  CODE_PERMISSION_DENIED: the role of the session does not allow the request
+ *  CODE_PERMISSION_DENIED: neither the role of the session nor the owner of the world allows the request
  *  CODE_RESOURCE_EXHAUSTED: a limit is reached, or the server is busy: try again
  *  CODE_FAILED_PRECONDITION: not possible in the current state
  *  CODE_ABORTED: another client changed the state first: read it again
@@ -894,6 +920,8 @@ export type Code = "CODE_UNSPECIFIED"|"CODE_INVALID_ARGUMENT"|"CODE_NOT_FOUND"|"
  *  REASON_PLACED_MAX: RESOURCE_EXHAUSTED: Limits.placed_max is reached in this generation
  *  REASON_FITNESS_NOT_AWAITED: FAILED_PRECONDITION: the world computes its fitness itself, its generation has not
  *    ended, or the island has been rated
+ *  REASON_WORLD_FROZEN: FAILED_PRECONDITION: the teacher has frozen the class; the members must wait
+ *  REASON_OWNER_WORLDS_MAX: RESOURCE_EXHAUSTED: the owner has ClassInfo.member_worlds_max worlds; delete one first
  *  REASON_WORLD_DAMAGED: FAILED_PRECONDITION: the run file of the world is damaged; see DamagedWorld
  *  REASON_RUNS_NOT_KEPT: Stored runs. FAILED_PRECONDITION: the server stores no runs
  *  REASON_MOMENT_NOT_FOUND: NOT_FOUND: the run has no such generation or tick
@@ -908,6 +936,16 @@ export type Code = "CODE_UNSPECIFIED"|"CODE_INVALID_ARGUMENT"|"CODE_NOT_FOUND"|"
  *  REASON_SUBSCRIPTION_NOT_FOUND: Subscriptions. NOT_FOUND
  *  REASON_SUBSCRIPTIONS_MAX: RESOURCE_EXHAUSTED: end a subscription first
  *  REASON_NO_VIEW: FAILED_PRECONDITION: the subscription has no view
+ *  REASON_CLASS_NOT_FOUND: Classes. NOT_FOUND: no class of this teacher has the name
+ *  REASON_CLASS_EXISTS: ALREADY_EXISTS
+ *  REASON_MEMBER_NOT_FOUND: NOT_FOUND
+ *  REASON_MEMBERS_MAX: RESOURCE_EXHAUSTED: the class is full
+ *  REASON_CLASSES_MAX: RESOURCE_EXHAUSTED: delete a class first
+ *  REASON_CODE_UNKNOWN: Sent in a Goodbye after a Hello with `join`. UNAUTHENTICATED: no open class has the code;
+ *    the teacher can show a new one
+ *  REASON_MEMBER_NAME_TAKEN: ALREADY_EXISTS: choose another name
+ *  REASON_MEMBER_REMOVED: UNAUTHENTICATED: the teacher has removed the member from the class
+ *  REASON_JOINS_TOO_FAST: RESOURCE_EXHAUSTED: the server got too many unknown codes; see retry_after_s
  *  REASON_FRAME_INVALID: Sessions. Sent in a Goodbye, or in a Response with request_id 0. INVALID_ARGUMENT: the
  *    header of a frame is invalid, or the frame is too large
  *  REASON_FRAME_LATE: FAILED_PRECONDITION: a frame did not arrive completely in time
@@ -928,10 +966,12 @@ export type Reason = "REASON_UNSPECIFIED"|"REASON_FIELD_INVALID"|"REASON_FIELD_U
   "REASON_WORLD_IS_LIVE"|"REASON_RUN_ENDED"|"REASON_NOTHING_TO_RESUME"|"REASON_NO_LEASE"|"REASON_REVISION_CHANGED"|
   "REASON_PLANNED_CHANGES_MAX"|"REASON_PLANNED_CHANGE_NOT_FOUND"|"REASON_RESET_IMPOSSIBLE"|"REASON_ISLAND_NOT_FOUND"|
   "REASON_ORGANISM_NOT_FOUND"|"REASON_GENERATION_OVER"|"REASON_GENERATION_CHANGED"|"REASON_NO_BODIES"|
-  "REASON_PLACED_MAX"|"REASON_FITNESS_NOT_AWAITED"|"REASON_WORLD_DAMAGED"|"REASON_RUNS_NOT_KEPT"|
-  "REASON_MOMENT_NOT_FOUND"|"REASON_SEEK_SUPERSEDED"|"REASON_REPLAYS_MAX"|"REASON_EXPORTS_MAX"|
-  "REASON_EXPORT_NOT_FOUND"|"REASON_EXPORT_ENDED"|"REASON_NOT_BRED_YET"|"REASON_MODEL_VERSION_DIFFERS"|
-  "REASON_RUN_FILE_DAMAGED"|"REASON_SUBSCRIPTION_NOT_FOUND"|"REASON_SUBSCRIPTIONS_MAX"|"REASON_NO_VIEW"|
+  "REASON_PLACED_MAX"|"REASON_FITNESS_NOT_AWAITED"|"REASON_WORLD_FROZEN"|"REASON_OWNER_WORLDS_MAX"|
+  "REASON_WORLD_DAMAGED"|"REASON_RUNS_NOT_KEPT"|"REASON_MOMENT_NOT_FOUND"|"REASON_SEEK_SUPERSEDED"|"REASON_REPLAYS_MAX"|
+  "REASON_EXPORTS_MAX"|"REASON_EXPORT_NOT_FOUND"|"REASON_EXPORT_ENDED"|"REASON_NOT_BRED_YET"|
+  "REASON_MODEL_VERSION_DIFFERS"|"REASON_RUN_FILE_DAMAGED"|"REASON_SUBSCRIPTION_NOT_FOUND"|"REASON_SUBSCRIPTIONS_MAX"|
+  "REASON_NO_VIEW"|"REASON_CLASS_NOT_FOUND"|"REASON_CLASS_EXISTS"|"REASON_MEMBER_NOT_FOUND"|"REASON_MEMBERS_MAX"|
+  "REASON_CLASSES_MAX"|"REASON_CODE_UNKNOWN"|"REASON_MEMBER_NAME_TAKEN"|"REASON_MEMBER_REMOVED"|"REASON_JOINS_TOO_FAST"|
   "REASON_FRAME_INVALID"|"REASON_FRAME_LATE"|"REASON_PROTOCOL_VERSION"|"REASON_HELLO_MISSING"|"REASON_HELLO_REPEATED"|
   "REASON_TLS_REQUIRED"|"REASON_TOKEN_MISSING"|"REASON_TOKEN_UNKNOWN"|"REASON_TOKEN_REVOKED"|"REASON_LOGIN_TOO_SOON"|
   "REASON_AUTHENTICATION_UNAVAILABLE"|"REASON_SESSIONS_MAX";
@@ -959,13 +999,21 @@ export type MutationKind = "MUTATION_KIND_UNSPECIFIED"|"MUTATION_KIND_CREEP"|"MU
  *  RUN_TABLE_ORGANISMS: parents, genes and cause of death of each organism
  *  RUN_TABLE_LINEAGE: the ancestors of each organism
  *  RUN_TABLE_POPULATION: the genes of one generation; another world can use them as its first population
- *  RUN_TABLE_EVENTS: the journal: all commands that were applied */
+ *  RUN_TABLE_EVENTS: the journal: all commands that were applied
+ *  RUN_TABLE_NOTES: the notes of AddNote
+ *  RUN_TABLE_FILE: the run file itself: a consistent copy; `format` must not be set */
 export type RunTable = "RUN_TABLE_UNSPECIFIED"|"RUN_TABLE_GENERATIONS"|"RUN_TABLE_ORGANISMS"|"RUN_TABLE_LINEAGE"|
-  "RUN_TABLE_POPULATION"|"RUN_TABLE_EVENTS";
+  "RUN_TABLE_POPULATION"|"RUN_TABLE_EVENTS"|"RUN_TABLE_NOTES"|"RUN_TABLE_FILE";
 
 /** TEXT_FORMAT_CSV: with a header line
  *  TEXT_FORMAT_JSON_LINES: one object per line */
 export type TextFormat = "TEXT_FORMAT_UNSPECIFIED"|"TEXT_FORMAT_CSV"|"TEXT_FORMAT_JSON_LINES";
+
+/** Which seed the worlds of a class have.
+ *  CLASS_SEEDS_UNSPECIFIED: CLASS_SEEDS_SAME
+ *  CLASS_SEEDS_SAME: all worlds have the seed of the template and begin alike
+ *  CLASS_SEEDS_OWN: each member has another seed, which follows from the template's and the member's number */
+export type ClassSeeds = "CLASS_SEEDS_UNSPECIFIED"|"CLASS_SEEDS_SAME"|"CLASS_SEEDS_OWN";
 
 /** The rules for one request. Server and clients read them by reflection, so they are defined only here. */
 export interface RequestRules {
@@ -976,6 +1024,8 @@ export interface RequestRules {
   viewer_in_own_replay?: boolean;
   /** the field of Response.answer that an accepted response contains; empty: none */
   answer?: string;
+  /** true: the owner of `world`, and the teacher of its class, may send the request with any role. */
+  by_owner?: boolean;
 }
 
 /** The oneof `kind` of Request: exactly one of these. */
@@ -993,6 +1043,11 @@ export interface RequestKinds {
   set_parameters: SetParameters;
   fork_world: ForkWorld;
   release_lease: ReleaseLease;
+  add_note: AddNote;
+  /** The teacher of the class may send it. */
+  for_each_world: ForEachWorld;
+  /** Part of an UpdateClass; clients below admin change `frozen` with that request. */
+  freeze_world: FreezeWorld;
   cancel_change: CancelChange;
   place: Place;
   remove: Remove;
@@ -1008,6 +1063,7 @@ export interface RequestKinds {
   get_breeding: GetBreeding;
   get_population: GetPopulation;
   get_motion: GetMotion;
+  observe: Observe;
   /** Subscriptions of this session. */
   subscribe_snapshots: SubscribeSnapshots;
   subscribe_events: SubscribeEvents;
@@ -1023,6 +1079,14 @@ export interface RequestKinds {
   /** Tables of a stored run as text for other programs. */
   export_run: ExportRun;
   continue_export: ContinueExport;
+  /** Classes: worlds of students under one teacher. A teacher may name only the own classes. */
+  create_class: CreateClass;
+  update_class: UpdateClass;
+  delete_class: DeleteClass;
+  list_classes: ListClasses;
+  add_members: AddMembers;
+  change_member: ChangeMember;
+  make_qr_codes: MakeQrCodes;
   /** The server itself. */
   shut_down: ShutDown;
 }
@@ -1050,6 +1114,12 @@ export interface ResponseAnswers {
   breeding: Breeding;
   population: Population;
   motion: Motion;
+  observations: Observations;
+  world_results: WorldResults;
+  class_info: ClassInfo;
+  classes: ClassList;
+  personal_codes: PersonalCodes;
+  qr_codes: QrCodes;
   planned_change: PlannedChange;
   placed: Placed;
   removed: Removed;
@@ -1075,7 +1145,10 @@ export interface Response extends Partial<ResponseAnswers> {
  *    expected_revision · revision       in the request, and of the world (REASON_REVISION_CHANGED)
  *    expected_generation · generation   in the request, and of the world (REASON_GENERATION_CHANGED)
  *    generation · island                what has been rated already or has not ended yet (REASON_FITNESS_NOT_AWAITED)
- *    retry_after_s                      seconds until the request can succeed (REASON_LOGIN_TOO_SOON) */
+ *    retry_after_s                      seconds until the request can succeed (REASON_LOGIN_TOO_SOON,
+ *                                       REASON_JOINS_TOO_FAST)
+ *    owner                              the owner of the world (REASON_ROLE_TOO_LOW)
+ *    class                              name of the class (reasons of classes, REASON_WORLD_FROZEN) */
 export interface Argument {
   name?: string;
   value?: string;
@@ -1145,7 +1218,9 @@ export interface ResetWorld {
 
 /** Copies a world as one of its generations was bred, before the first tick and without the commands since, or at the
  *  current tick. The copy has the seed, organisms, parameters and schedule that the world had at that moment. The copy
- *  waits for Run. Before the answer, the server reads the run file of the copy back. */
+ *  waits for Run. Before the answer, the server reads the run file of the copy back. The copy belongs to the user who sent
+ *  the request. Whoever may send it only as owner or teacher chooses a name that begins with the name of the world up to its
+ *  second `_`, and another `_`: "bio2_red-fox_2". */
 export interface ForkWorld {
   /** the world to copy; it may be a replay */
   world?: string;
@@ -1221,6 +1296,69 @@ export interface CancelChange {
   world?: string;
   /** PlannedChange.id */
   id?: number;
+}
+
+/** Writes a note into the journal of the run: a prediction, an answer, a remark. It changes nothing in the world. */
+export interface AddNote {
+  world?: string;
+  /** 1 to 32 characters of a-z 0-9 _: "prediction" */
+  kind?: string;
+  /** 1 to 4,096 bytes of UTF-8 */
+  text?: string;
+}
+
+/** Stops a world, or lets it go on, whatever its RunState is. While it is frozen, its owner cannot change it. */
+export interface FreezeWorld {
+  world?: string;
+  frozen?: boolean;
+}
+
+/** The oneof `action` of ForEachWorld: exactly one of these.
+ *  The action names no world: the field `world` of its message must be empty. */
+export interface ForEachWorldActions {
+  run: Run;
+  pause: Pause;
+  resume: Resume;
+  set_speed: SetSpeed;
+  set_parameters: SetParameters;
+  /** of each member, the world with which he began; its forks stay */
+  reset_world: ResetWorld;
+}
+
+/** Applies one command to every world of a class, between two ticks: no world advances in between. The journal of each
+ *  world contains its own command. If a world refuses, the others are changed all the same. */
+export interface ForEachWorld extends Partial<ForEachWorldActions> {
+  /** required */
+  class?: string;
+}
+
+/** The worlds that ForEachWorld found, in order of creation. */
+export interface WorldResults {
+  results?: WorldResult[];
+}
+
+export interface WorldResult {
+  world?: string;
+  /** absent: the command was applied */
+  status?: Status;
+  applied_tick?: number;
+}
+
+/** Computes numbers from the statistics of a run (docs/LESSONS.md, Observations): "mean(fitness_mean, 10, 20)". */
+export interface Observe {
+  world?: string;
+  /** 1 to 32 of at most 256 bytes */
+  expressions?: string[];
+}
+
+export interface Observations {
+  /** in the order of Observe.expressions */
+  observations?: Observation[];
+}
+
+export interface Observation {
+  /** absent: the run has no such value yet, for example because it has too few generations */
+  value?: number;
 }
 
 /** Places items and organisms on one island of a world, between two ticks. The server places everything or, if one field
@@ -1832,13 +1970,156 @@ export interface ContinueExport {
 export interface ExportPart {
   /** >= 1 */
   export_id?: number;
-  /** UTF-8; a part may end within a row */
+  /** UTF-8; a part may end within a row. RUN_TABLE_FILE: bytes of the file */
   text?: Uint8Array;
   /** true: this part completes the export */
   last?: boolean;
   /** Number of generations that are missing. The file does not contain their organisms, and the server cannot simulate
    *  them again, because another version of the model simulated them. */
   generations_left_out?: number;
+}
+
+/** Creates a class. It is open: students can join with its code. */
+export interface CreateClass {
+  /** 1 to 24 characters of a-z 0-9 -, a letter first */
+  name?: string;
+  /** The world of each member. `name` must be empty. Its parameters must be within `ranges`. Absent: the default world. */
+  template?: CreateWorld;
+  seeds?: ClassSeeds;
+  /** Narrower ranges of parameters in the worlds of this class. Absent: the server's defaults for classes. */
+  ranges?: QuotaRanges;
+  /** Maximum number of worlds of one member, 1 to 8; 0: 3. A member creates further worlds by forks. */
+  member_worlds_max?: number;
+  /** name of the lesson that the page of each member opens; empty: none */
+  lesson?: string;
+}
+
+export interface QuotaRanges {
+  /** each parameter at most once */
+  ranges?: QuotaRange[];
+}
+
+/** A narrower range of one parameter of kind number. */
+export interface QuotaRange {
+  parameter?: string;
+  /** within the range of the parameter */
+  min?: number;
+  max?: number;
+}
+
+/** Changes a class: all that is set, or nothing. */
+export interface UpdateClass {
+  class?: string;
+  /** true: makes the code valid for 20 minutes, and the class open. false: nobody can join. */
+  open?: boolean;
+  /** replaces the code */
+  new_code?: boolean;
+  /** true: all worlds of the class stop at once, and their members cannot change them. false: they go on. */
+  frozen?: boolean;
+  /** absent: unchanged. Values outside that worlds have already stay. */
+  ranges?: QuotaRanges;
+  member_worlds_max?: number;
+  lesson?: string;
+}
+
+/** Deletes a class. Its members can no longer connect. Its worlds are deleted; their run files stay in the data folder. */
+export interface DeleteClass {
+  class?: string;
+}
+
+/** Lists the classes of this teacher; for a controller or an admin, all classes. */
+export interface ListClasses {}
+
+export interface ClassList {
+  /** ordered by name */
+  classes?: ClassInfo[];
+}
+
+/** A class as its teacher sees it. */
+export interface ClassInfo {
+  name?: string;
+  /** the user who created it */
+  teacher?: string;
+  /** six letters with which students join; empty: the class is not open */
+  code?: string;
+  /** seconds until the code ends */
+  code_valid_s?: number;
+  frozen?: boolean;
+  template?: CreateWorld;
+  seeds?: ClassSeeds;
+  ranges?: QuotaRanges;
+  member_worlds_max?: number;
+  lesson?: string;
+  /** in the order in which they joined */
+  members?: ClassMember[];
+  /** Wrong codes arrive so fast that joining is slowed for the whole server: somebody may be guessing. */
+  codes_are_guessed?: boolean;
+}
+
+export interface ClassMember {
+  /** from 1; never used again in the class */
+  number?: number;
+  /** what the member, or the server, chose */
+  name?: string;
+  /** the user name of its sessions: CLASS/NAME */
+  user?: string;
+  /** the world with which the member began: CLASS_NAME, with a name of a-z 0-9 - made from `name` */
+  world?: string;
+  /** number of open sessions */
+  sessions?: number;
+  /** the teacher has removed the member */
+  removed?: boolean;
+  /** the member has connected at least once */
+  joined?: boolean;
+}
+
+/** Adds members from a list, for personal codes on paper. All or none. */
+export interface AddMembers {
+  class?: string;
+  /** each 1 to 24 characters; an empty name: the server makes one up */
+  names?: string[];
+}
+
+/** Changes one member. */
+export interface ChangeMember {
+  class?: string;
+  number?: number;
+  /** true: ends the sessions of the member, whose token and codes no longer work; the world stays. */
+  removed?: boolean;
+  /** the new name; the user and the world keep theirs */
+  name?: string;
+  /** the answer contains it; the member's token and earlier personal code no longer work */
+  new_personal_code?: boolean;
+}
+
+/** The server stores only digests of personal codes, so they are shown only once. */
+export interface PersonalCodes {
+  codes?: PersonalCode[];
+}
+
+export interface PersonalCode {
+  /** of the member */
+  number?: number;
+  name?: string;
+  /** ten letters, with which this member can connect on any device; empty: no new one was asked for */
+  code?: string;
+}
+
+/** Makes QR codes of links. */
+export interface MakeQrCodes {
+  /** 1 to 100 of 1 to 300 bytes */
+  texts?: string[];
+}
+
+export interface QrCodes {
+  codes?: QrCode[];
+}
+
+export interface QrCode {
+  /** modules per side, without the quiet zone of 4 modules */
+  size?: number;
+  /** size * size bytes, row by row: 1 is dark */
+  modules?: Uint8Array;
 }
 
 /** Ends the server in the same way as SIGTERM: it answers pending requests, writes all runs to the disk and sends each
@@ -1909,6 +2190,18 @@ export interface Hello {
    *  sends a refusal with REASON_ANSWER_TOO_LARGE instead. If an event is larger, the server drops it and counts it in
    *  EventsDropped. If a snapshot is larger, the server drops it and counts it in SnapshotFrame.dropped_count. */
   frame_bytes_max?: number;
+  /** instead of a token: connects as a member of a class */
+  join?: Join;
+}
+
+/** Connects as a member of a class: with the code of the class as a new member, with a personal code as the member to whom
+ *  it belongs. */
+export interface Join {
+  /** letters; upper and lower case are equal, spaces and hyphens are ignored */
+  code?: string;
+  /** Of a new member: at most 24 characters without control characters, not the name of another member. Empty: the server
+   *  makes up a name of two words. */
+  name?: string;
 }
 
 /** The last message of the server before it closes a session or refuses it. */
@@ -1937,8 +2230,24 @@ export interface Welcome {
   page_port?: number;
   /** A client refuses a host with characters that a URL cannot contain. The host may be another one than that to which the
    *  client connected, because a proxy may serve the page.
-   *  host name or IP address without brackets; empty: the host to which the client connected */
+   *  Of a member of a class. The world exists when the server answers the first request. */
+  membership?: Membership;
+  /** host name or IP address without brackets; empty: the host to which the client connected */
   page_host?: string;
+}
+
+export interface Membership {
+  class?: string;
+  /** of the member */
+  name?: string;
+  /** the member's own world */
+  world?: string;
+  /** ClassInfo.lesson */
+  lesson?: string;
+  /** the user who created the class */
+  teacher?: string;
+  /** After a `join`: the token with which the member connects from now on. Otherwise empty. */
+  token?: string;
 }
 
 /** The answer to each request: the type of the field of Response that its rules name. */
@@ -1954,6 +2263,9 @@ export interface Answers {
   set_parameters: ParameterSet;
   fork_world: WorldInfo;
   release_lease: WorldInfo;
+  add_note: WorldInfo;
+  for_each_world: WorldResults;
+  freeze_world: WorldInfo;
   cancel_change: PlannedChange;
   place: Placed;
   remove: Removed;
@@ -1968,6 +2280,7 @@ export interface Answers {
   get_breeding: Breeding;
   get_population: Population;
   get_motion: Motion;
+  observe: Observations;
   subscribe_snapshots: Subscription;
   subscribe_events: Subscription;
   unsubscribe: object;
@@ -1979,6 +2292,13 @@ export interface Answers {
   close_replay: object;
   export_run: ExportPart;
   continue_export: ExportPart;
+  create_class: ClassInfo;
+  update_class: ClassInfo;
+  delete_class: object;
+  list_classes: ClassList;
+  add_members: PersonalCodes;
+  change_member: PersonalCodes;
+  make_qr_codes: QrCodes;
   shut_down: object;
 }
 
@@ -2019,6 +2339,8 @@ export interface Messages {
   "evod.v1.SnapshotTile": SnapshotTile;
   "evod.v1.Event": Event;
   "evod.v1.GenerationFinished": GenerationFinished;
+  "evod.v1.ClassChanged": ClassChanged;
+  "evod.v1.NoteAdded": NoteAdded;
   "evod.v1.FitnessSet": FitnessSet;
   "evod.v1.ParametersChanged": ParametersChanged;
   "evod.v1.ChangeDropped": ChangeDropped;
@@ -2055,6 +2377,14 @@ export interface Messages {
   "evod.v1.SetSpeed": SetSpeed;
   "evod.v1.SetParameters": SetParameters;
   "evod.v1.CancelChange": CancelChange;
+  "evod.v1.AddNote": AddNote;
+  "evod.v1.FreezeWorld": FreezeWorld;
+  "evod.v1.ForEachWorld": ForEachWorld;
+  "evod.v1.WorldResults": WorldResults;
+  "evod.v1.WorldResult": WorldResult;
+  "evod.v1.Observe": Observe;
+  "evod.v1.Observations": Observations;
+  "evod.v1.Observation": Observation;
   "evod.v1.Place": Place;
   "evod.v1.PlacedItem": PlacedItem;
   "evod.v1.PlacedOrganism": PlacedOrganism;
@@ -2104,12 +2434,30 @@ export interface Messages {
   "evod.v1.OrganismName": OrganismName;
   "evod.v1.ContinueExport": ContinueExport;
   "evod.v1.ExportPart": ExportPart;
+  "evod.v1.CreateClass": CreateClass;
+  "evod.v1.QuotaRanges": QuotaRanges;
+  "evod.v1.QuotaRange": QuotaRange;
+  "evod.v1.UpdateClass": UpdateClass;
+  "evod.v1.DeleteClass": DeleteClass;
+  "evod.v1.ListClasses": ListClasses;
+  "evod.v1.ClassList": ClassList;
+  "evod.v1.ClassInfo": ClassInfo;
+  "evod.v1.ClassMember": ClassMember;
+  "evod.v1.AddMembers": AddMembers;
+  "evod.v1.ChangeMember": ChangeMember;
+  "evod.v1.PersonalCodes": PersonalCodes;
+  "evod.v1.PersonalCode": PersonalCode;
+  "evod.v1.MakeQrCodes": MakeQrCodes;
+  "evod.v1.QrCodes": QrCodes;
+  "evod.v1.QrCode": QrCode;
   "evod.v1.ShutDown": ShutDown;
   "evod.v1.Subscription": Subscription;
   "evod.v1.ClientMessage": ClientMessage;
   "evod.v1.AcknowledgeSnapshot": AcknowledgeSnapshot;
   "evod.v1.ServerMessage": ServerMessage;
   "evod.v1.Hello": Hello;
+  "evod.v1.Join": Join;
   "evod.v1.Goodbye": Goodbye;
   "evod.v1.Welcome": Welcome;
+  "evod.v1.Membership": Membership;
 }
