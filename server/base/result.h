@@ -61,6 +61,8 @@ enum class Reason {
     GenerationChanged = 45,
     NoBodies = 46,
     PlacedMax = 47,
+    WorldFrozen = 60,
+    OwnerWorldsMax = 61,
     FitnessNotAwaited = 48,
     WorldDamaged = 49,
     RunsNotKept = 50,

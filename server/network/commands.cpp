@@ -3,6 +3,7 @@
 #include "server/base/assert.h"
 #include "server/log/log.h"
 #include "server/protocol/commands.h"
+#include "server/protocol/for_each_world.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
 #include "server/runtime/random_ids.h"
@@ -64,6 +65,17 @@ std::string account_of(const base::Actor& actor) {
     return network::account_of(actor.user, error ? actor.address : address_key(address));
 }
 
+/// The client_key that a client has sent, by that in a journal.
+std::string client_key_of(const std::string& key) {
+    return protocol::key_of_batch(key).value_or(key);
+}
+
+access::Requester requester_of(const Session& session, const v1::Request& request) {
+    return {.user = session.user().name,
+            .role = session.user().role,
+            .in_own_replay = session.replays.contains(protocol::world_of(request))};
+}
+
 UserKey key_of(const run_file::Origin& origin) {
     return {origin.by.user, origin.client_key};
 }
@@ -98,11 +110,19 @@ Commands::Commands(asio::io_context& context, runtime::Simulations& simulations,
 void Commands::restore(const std::vector<run_file::UsedKey>& keys, const std::vector<run_file::JournalEntry>& answers) {
     for (const run_file::UsedKey& key : keys) {
         if (key.by.kind == base::Actor::Kind::Client) {
-            reply_cache_.restore_evicted({key.by.user, key.client_key}, account_of(key.by), key.highest_id);
+            reply_cache_.restore_evicted({key.by.user, client_key_of(key.client_key)}, account_of(key.by),
+                                         key.highest_id);
         }
     }
     for (const run_file::JournalEntry& entry : answers) {
-        if (entry.origin.by.kind == base::Actor::Kind::Client) {
+        if (entry.origin.by.kind != base::Actor::Kind::Client) {
+            continue;
+        }
+        if (const auto key = protocol::key_of_batch(entry.origin.client_key)) {
+            // The answer for all worlds is not stored, so a client that sends the request again must read the state.
+            reply_cache_.restore_evicted({entry.origin.by.user, *key}, account_of(entry.origin.by),
+                                         entry.origin.request_id);
+        } else {
             reply_cache_.restore(key_of(entry.origin), account_of(entry.origin.by), entry.origin.request_id,
                                  entry.origin.request, std::make_shared<const std::string>(entry.answer));
         }
@@ -120,10 +140,16 @@ void Commands::handle(Session& session, const v1::Request& request) {
              .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}},
              .reason = base::Reason::FieldUnknown}));
     }
-    auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
-    if (!command) {
+    std::optional<simulation::Command> command; // nullopt: one for each of several worlds
+    if (request.has_for_each_world()) {
+        if (const auto why = protocol::refusal_of_action(request)) {
+            return session.answer(refused(*why));
+        }
+    } else if (auto one = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()})) {
+        command = *std::move(one);
+    } else {
         count_exceeded_limits(request, limit_counters_);
-        return session.answer(refused(command.error()));
+        return session.answer(refused(one.error()));
     }
 
     const UserKey key{session.user().name, request.client_key()};
@@ -156,18 +182,23 @@ void Commands::handle(Session& session, const v1::Request& request) {
     case ReplyCache::Verdict::New:
         break;
     }
-    if (!send(*std::move(command), request, std::move(bytes), &session)) {
+    const bool sent =
+        command ? send(*std::move(command), request, std::move(bytes), &session) : send_for_each(request, session);
+    if (!sent) {
         reply_cache_.forget(key, id, encode_response(refused(mailbox_full(limit_counters_))));
     }
 }
 
-void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> lease) {
+void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> lease,
+                          const simulation::Ownership& ownership) {
     request.set_client_key(own_key_);
     request.set_request_id(++own_request_id_);
     auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     EVOD_ASSERT(command.has_value());
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;
+    } else if (auto* created = std::get_if<simulation::CreateWorld>(&*command)) {
+        created->ownership = ownership;
     }
     send(*std::move(command), request, bytes_of(request), nullptr);
 }
@@ -177,23 +208,86 @@ bool Commands::send(simulation::Command command, const v1::Request& request, std
     if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
         change->by = by;
     }
-    return simulations_.try_send(runtime::CommandMail{.command = std::move(command),
-                                                      .origin = {.by = std::move(by),
-                                                                 .client_key = request.client_key(),
-                                                                 .request_id = request.request_id(),
-                                                                 .request = std::move(bytes)},
-                                                      .request_name = protocol::name_of(request),
-                                                      .session = sender != nullptr ? sender->number() : 0,
-                                                      .user = sender != nullptr ? sender->account() : ""});
+    return simulations_.try_send(
+        runtime::CommandMail{.command = std::move(command),
+                             .origin = {.by = std::move(by),
+                                        .client_key = request.client_key(),
+                                        .request_id = request.request_id(),
+                                        .request = std::move(bytes)},
+                             .request_name = protocol::name_of(request),
+                             .session = sender != nullptr ? sender->number() : 0,
+                             .user = sender != nullptr ? sender->account() : "",
+                             .requester = sender != nullptr ? requester_of(*sender, request) : access::Requester{},
+                             .rules = sender != nullptr ? protocol::rules_of(request) : nullptr});
+}
+
+bool Commands::send_for_each(const v1::Request& request, const Session& sender) {
+    const std::uint64_t batch = ++last_batch_;
+    runtime::Mail mail = runtime::ForEachWorld{.class_name = request.for_each_world().class_(),
+                                               .request = std::make_shared<const v1::Request>(request),
+                                               .by = sender.actor(),
+                                               .session = sender.number(),
+                                               .user = sender.account(),
+                                               .requester = requester_of(sender, request),
+                                               .batch = batch};
+    if (!simulations_.mailbox_of("").try_push(std::move(mail), sender.account())) {
+        return false;
+    }
+    batches_.emplace(batch, Batch{{sender.user().name, request.client_key()}, request.request_id(), {}, {}});
+    return true;
+}
+
+void Commands::on_begun(runtime::BatchBegun begun) {
+    batches_.find(begun.batch)->second.worlds = std::move(begun.worlds);
+    answer_if_complete(begun.batch);
+}
+
+void Commands::on_one_done(const runtime::CommandDone& done) {
+    v1::WorldResult result;
+    result.set_world(std::visit(
+        [](const auto& command) {
+            if constexpr (requires { command.world; }) {
+                return command.world;
+            }
+            return std::string{};
+        },
+        done.mail.command));
+    if (done.outcome) {
+        result.set_applied_tick(done.outcome->tick);
+    } else {
+        *result.mutable_status() =
+            protocol::to_proto(protocol::with_paths(done.outcome.error(), done.mail.request_name));
+    }
+    batches_.find(done.mail.batch)->second.done[result.world()] = result;
+    answer_if_complete(done.mail.batch);
+}
+
+void Commands::answer_if_complete(std::uint64_t batch) {
+    const auto found = batches_.find(batch);
+    const Batch& each = found->second;
+    if (!each.worlds || each.done.size() < each.worlds->size()) {
+        return;
+    }
+    v1::Response response = response_to(each.request_id);
+    v1::WorldResults& results = *response.mutable_world_results();
+    for (const std::string& world : *each.worlds) {
+        *results.add_results() = each.done.find(world)->second;
+    }
+    reply_cache_.finish(each.key, each.request_id, encode_response(response));
+    batches_.erase(found);
 }
 
 void Commands::on_done(runtime::CommandDone done) {
     const runtime::CommandMail& mail = done.mail;
     const auto frame = std::make_shared<const std::string>(std::move(done.frame));
-    if (!done.outcome) {
-        return on_refused(mail, done.outcome.error(), frame);
+    if (mail.batch != 0) {
+        on_one_done(done);
     }
-    if (mail.session != 0) { // the server sends each of its own commands once, so they have no entry in the cache
+    if (!done.outcome) {
+        return mail.batch != 0 ? void() : on_refused(mail, done.outcome.error(), frame);
+    }
+    if (mail.session != 0 &&
+        mail.batch == 0) { // the server sends each of its own commands once, so they have no entry in the cache
         reply_cache_.finish(key_of(mail.origin), mail.origin.request_id, frame);
     }
     const std::string& world = done.outcome->world;

@@ -10,6 +10,7 @@
 #include "server/network/streams.h"
 #include "server/runtime/simulations.h"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,11 +31,15 @@ class Commands {
     /// Sends a command on behalf of the server itself. If the command is refused, the refusal is logged. If the mailbox
     /// is full, the command is dropped.
     ///
-    /// lease  for ReleaseLease: the number of the lease.
-    void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
+    /// lease      for ReleaseLease: the number of the lease.
+    /// ownership  for CreateWorld: to whom the world belongs.
+    void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {},
+                    const simulation::Ownership& ownership = {});
     /// Must be called after a command was refused, or was applied and stored. Sends the answer and reports the change
     /// to subscribers.
     void on_done(runtime::CommandDone done);
+    /// Must be called when the worlds of a ForEachWorld are known.
+    void on_begun(runtime::BatchBegun begun);
 
     /// The keys in the reply cache, by user.
     const base::Quota& cached_keys() const { return reply_cache_.key_quota(); }
@@ -59,12 +64,27 @@ class Commands {
     /// sender   nullptr: the server itself.
     bool send(simulation::Command command, const v1::Request& request, std::string bytes, const Session* sender);
     void on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const SharedBytes& frame);
+    /// Sends a ForEachWorld to the simulation thread. Returns false if its mailbox is full.
+    bool send_for_each(const v1::Request& request, const Session& sender);
+    /// A command of a ForEachWorld was refused, or was applied and stored.
+    void on_one_done(const runtime::CommandDone& done);
+    /// Answers a ForEachWorld if all its commands are done.
+    void answer_if_complete(std::uint64_t batch);
 
     runtime::Simulations& simulations_;
     Streams& streams_;
     LimitCounters& limit_counters_;
     Leases leases_;
     ReplyCache reply_cache_;
+    /// A ForEachWorld under way.
+    struct Batch {
+        UserKey key;
+        std::uint64_t request_id = 0;
+        std::optional<std::vector<std::string>> worlds; // in the order of the answer; nullopt: they are not known yet
+        std::map<std::string, v1::WorldResult> done;    // by world
+    };
+    std::map<std::uint64_t, Batch> batches_;
+    std::uint64_t last_batch_ = 0;
     const std::string own_key_; // client_key for commands of the server itself
     std::uint64_t own_request_id_ = 0;
     bool grants_leases_ = true;

@@ -132,10 +132,11 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         log::trace({.session = session.number(), .client = session.by()}, "session {}: {} sends {}, request {}",
                    session.number(), session.by(), protocol::name_of(request), request.request_id());
     }
-    const bool in_own_replay = session.replays.contains(protocol::world_of(request));
-    if (const auto permitted =
-            access::authorize(session.user().role, *rules, protocol::name_of(request), in_own_replay);
-        !permitted) {
+    const access::Requester requester{.user = session.user().name,
+                                      .role = session.user().role,
+                                      .in_own_replay = session.replays.contains(protocol::world_of(request))};
+    // Whether the session's user owns the world is known to the simulation thread, which asks again.
+    if (const auto permitted = access::may(requester, *rules, protocol::name_of(request), nullptr); !permitted) {
         return refuse_it(permitted.error());
     }
     if (request.request_id() == 0) {
@@ -198,7 +199,9 @@ void Dispatcher::deliver(std::vector<runtime::Delivery> deliveries) {
         },
         [this](runtime::ExportPartDone& done) { background_queries_.on_done(std::move(done)); },
         [this](runtime::BreedingDone& done) { background_queries_.on_done(std::move(done)); },
-        [this](runtime::Pong& /*pong*/) { heartbeat_.answered(); }, [this](auto& done) { on_done(std::move(done)); }};
+        [this](runtime::BatchBegun& begun) { commands_.on_begun(std::move(begun)); },
+        [this](runtime::Pong& /*pong*/) { heartbeat_.answered(); },
+        [this](auto& done) { on_done(std::move(done)); }};
     expect_results(deliveries);
     for (runtime::Delivery& delivery : deliveries) {
         std::visit(base::Overloaded{[&](runtime::Reply& reply) {
@@ -372,6 +375,21 @@ void Dispatcher::on_done(runtime::ReplayDone done) {
         *response.mutable_world() = *std::move(done.shown);
     }
     session->answer(std::move(response));
+}
+
+void Dispatcher::on_done(runtime::ClassSet done) {
+    for (v1::Event& event : done.events) {
+        streams_.publish(std::move(event));
+    }
+    if (const auto waiting = class_waiters_.extract(done.number); !waiting.empty()) {
+        waiting.mapped()();
+    }
+}
+
+void Dispatcher::set_class(const std::string& name, std::optional<simulation::ClassRules> rules, base::Actor by,
+                           std::function<void()> done) {
+    class_waiters_.emplace(++last_class_change_, std::move(done));
+    simulations_.mailbox_of("").push(runtime::SetClass{name, std::move(rules), std::move(by), last_class_change_});
 }
 
 void Dispatcher::on_done(const runtime::ReplayMemory& memory) {

@@ -40,6 +40,11 @@ class Dispatcher {
     Commands& commands() { return commands_; }
     const ReplayPlaces& replay_places() const { return replay_places_; }
     BackgroundQueries& background_queries() { return background_queries_; }
+    /// Sets the rules of a class for its worlds. Calls `done` when they hold.
+    ///
+    /// rules  nullopt: the class is deleted.
+    void set_class(const std::string& name, std::optional<simulation::ClassRules> rules, base::Actor by,
+                   std::function<void()> done);
     /// Commands::handle_own().
     void handle_own(v1::Request request) { commands_.handle_own(std::move(request)); }
 
@@ -62,6 +67,7 @@ class Dispatcher {
     // The following functions complete the answer to a request and send it, if the session still exists.
     void on_done(runtime::QueryDone done);
     void on_done(runtime::ReplayDone done);
+    void on_done(runtime::ClassSet done);
     void on_done(runtime::RunFound done);
     void on_done(const runtime::ReplayMemory& memory);
     void on_done(const runtime::ReplayEnded& ended);
@@ -89,6 +95,8 @@ class Dispatcher {
     Heartbeat heartbeat_;
     Commands commands_;
     ReplayPlaces replay_places_;
+    std::map<std::uint64_t, std::function<void()>> class_waiters_; // key: ClassSet::number
+    std::uint64_t last_class_change_ = 0;
     bool going_away_ = false;
 };
 

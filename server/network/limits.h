@@ -20,7 +20,7 @@ namespace evod::network {
 
 // The table in limits.cpp describes each limit and what the server does when the limit is reached.
 constexpr std::uint32_t requests_in_flight_max = 32;
-constexpr std::uint32_t subscriptions_max = 32;
+constexpr std::uint32_t subscriptions_max = 128;
 constexpr std::size_t watched_islands_max = 16'384; // four times the number of islands in the largest world
 constexpr double snapshot_rate_hz_max = 120;
 // The server raises lower rates to this rate, because the period of a much lower rate would overflow the clock.

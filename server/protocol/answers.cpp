@@ -45,7 +45,8 @@ v1::Response answer_of(std::uint64_t request_id, const std::string& request_name
     if (applied->planned) {
         *response.mutable_planned_change() = to_proto(*applied->planned);
     } else if (applied->parameters) {
-        *response.mutable_parameters() = to_proto(*applied->parameters);
+        *response.mutable_parameters() =
+            to_proto(*applied->parameters, laboratory.class_of(**laboratory.find(applied->world)));
     } else if (applied->placed) {
         *response.mutable_placed() = placed_message(*applied->placed);
     } else if (applied->removed) {

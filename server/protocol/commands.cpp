@@ -198,6 +198,21 @@ simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws,
     return command;
 }
 
+simulation::Command command_of(const v1::AddNote& request, const Draws&, Violations& violations) {
+    constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+    const std::string& kind = request.kind();
+    if (kind.empty() || kind.size() > note_kind_bytes_max || kind.find_first_not_of(letters) != std::string::npos) {
+        violations.push_back({"add_note.kind",
+                              "1 to " + std::to_string(note_kind_bytes_max) + " characters of a-z 0-9 _",
+                              '"' + kind + '"'});
+    }
+    if (request.text().empty() || request.text().size() > note_text_bytes_max) {
+        violations.push_back({"add_note.text", "1 to " + std::to_string(note_text_bytes_max) + " bytes",
+                              std::to_string(request.text().size()) + " bytes"});
+    }
+    return simulation::AddNote{lookup_name(request.world()), kind, request.text()};
+}
+
 void add_faults(const v1::View& view, const std::string& path, Violations& violations) {
     const v1::Region& region = view.region(); // if it is absent, all its fields are 0
     const auto finite = [&](const char* field, double value) {
@@ -313,6 +328,8 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
             return command_of(request.pause(), draws, violations);
         case RequestCase::kResume:
             return command_of(request.resume(), draws, violations);
+        case RequestCase::kAddNote:
+            return command_of(request.add_note(), draws, violations);
         case RequestCase::kSetSpeed:
             return command_of(request.set_speed(), draws, violations);
         case RequestCase::kSetParameters:

@@ -15,6 +15,7 @@
 namespace evod::protocol {
 
 constexpr std::size_t client_key_bytes_max = 64;
+constexpr std::size_t note_kind_bytes_max = 32, note_text_bytes_max = 4096;
 constexpr std::uint32_t unacknowledged_snapshots_max = 1000; // maximum per island and subscription
 constexpr std::uint64_t view_bytes_per_s_least = 1000, view_bytes_per_s_most = 1'000'000'000'000;
 

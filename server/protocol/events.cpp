@@ -58,8 +58,8 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                        to.set_planned_change(changed.planned);
                        if (const auto entry = laboratory.find(event.world)) {
                            for (const std::string& name : changed.names) {
-                               *to.add_changed() =
-                                   state_of(*parameters::find_parameter(name), (*entry)->world.parameters());
+                               *to.add_changed() = state_of(*parameters::find_parameter(name),
+                                                            (*entry)->world.parameters(), laboratory.class_of(**entry));
                            }
                        }
                    },
@@ -122,7 +122,8 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                 to.set_revision(applied.parameters->revision);
                 for (const auto& assignment : set.assignments) {
                     if (const auto* description = parameters::find_parameter(assignment.name)) {
-                        *to.add_changed() = state_of(*description, *applied.parameters);
+                        *to.add_changed() =
+                            state_of(*description, *applied.parameters, entry ? laboratory.class_of(**entry) : nullptr);
                     }
                 }
             },
@@ -152,12 +153,29 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                     add_awaited_islands((*entry)->world, *to.mutable_awaited_islands());
                 }
             },
+            [&](const simulation::AddNote& note) {
+                auto& to = *message.mutable_note_added();
+                *to.mutable_by() = to_proto(by);
+                to.set_kind(note.kind);
+                to.set_text(note.text);
+            },
             [&](const auto&) { set_world(*message.mutable_run_control_changed()); },
         },
         command);
     if (message.kind_case() == v1::Event::KIND_NOT_SET) {
         return std::nullopt;
     }
+    return message;
+}
+
+v1::Event run_control_event(const simulation::Entry& entry, const base::Actor& by) {
+    v1::Event message;
+    message.set_world(entry.name);
+    message.set_run_id(to_text(entry.run_id));
+    message.set_tick(entry.world.moment().tick);
+    auto& to = *message.mutable_run_control_changed();
+    *to.mutable_by() = to_proto(by);
+    *to.mutable_world() = to_proto(entry);
     return message;
 }
 

@@ -18,6 +18,9 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
                                   const base::Actor& by, const simulation::Laboratory& laboratory);
 
+/// Returns the event that reports a change of what decides when a world advances.
+v1::Event run_control_event(const simulation::Entry& entry, const base::Actor& by);
+
 /// Returns the event that reports a world that has stopped, because its run file is damaged.
 v1::Event event_of(const simulation::DamagedWorld& damaged);
 

@@ -94,7 +94,8 @@ v1::ParameterDescription to_proto(const parameters::ParameterDescription& descri
     return to;
 }
 
-v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set) {
+v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set,
+                            const simulation::ClassRules* class_rules) {
     v1::ParameterState to;
     const auto active = description.get(set.active), requested = description.get(set.requested.values);
     to.set_name(std::string{description.name});
@@ -102,13 +103,17 @@ v1::ParameterState state_of(const parameters::ParameterDescription& description,
     if (requested != active) {
         *to.mutable_pending() = to_proto(requested);
     }
+    if (const auto* range = class_rules != nullptr ? class_rules->range_of(description.name) : nullptr) {
+        to.set_min(range->min);
+        to.set_max(range->max);
+    }
     return to;
 }
 
-v1::ParameterSet to_proto(const parameters::ParameterSet& set) {
+v1::ParameterSet to_proto(const parameters::ParameterSet& set, const simulation::ClassRules* class_rules) {
     v1::ParameterSet to;
     for (const auto& description : parameters::parameter_registry()) {
-        *to.add_parameters() = state_of(description, set);
+        *to.add_parameters() = state_of(description, set, class_rules);
     }
     to.set_revision(set.revision);
     to.set_summary(experiment_summary(set.active));

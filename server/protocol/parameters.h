@@ -7,6 +7,7 @@
 #include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 #include "server/simulation/changes.h"
+#include "server/simulation/class_rules.h"
 
 #include <google/protobuf/repeated_ptr_field.h>
 
@@ -17,7 +18,8 @@ namespace evod::protocol {
 
 v1::ParameterValue to_proto(const parameters::ParameterValue& value);
 v1::ParameterDescription to_proto(const parameters::ParameterDescription& description);
-v1::ParameterSet to_proto(const parameters::ParameterSet& set);
+/// class_rules  of the class of the world; nullptr: it has none.
+v1::ParameterSet to_proto(const parameters::ParameterSet& set, const simulation::ClassRules* class_rules);
 
 /// Adds the warnings about requested parameters to an answer.
 void add_warnings(v1::Response& response, const parameters::RequestedParameters& requested);
@@ -29,8 +31,11 @@ google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const parameters
 v1::PlannedChange to_proto(const parameters::PlannedChange& change);
 v1::AppliedChange to_proto(const simulation::Change& change);
 
-/// Returns the current and the pending value of one parameter.
-v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set);
+/// Returns the current and the pending value of one parameter, and its range in the class of the world.
+///
+/// class_rules  as above.
+v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set,
+                            const simulation::ClassRules* class_rules);
 
 /// Returns the assignments that have a value. Adds a violation for each assignment without a value; in this case it
 /// also checks the other assignments. If all have a value, parameters::assign() checks them later, together with the

@@ -86,7 +86,7 @@ base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& labo
         return entry.error();
     }
     const simulation::World& world = (*entry)->world;
-    v1::ParameterSet set = to_proto(world.parameters());
+    v1::ParameterSet set = to_proto(world.parameters(), laboratory.class_of(**entry));
     for (const parameters::PlannedChange& change : world.planned()) {
         *set.add_planned() = to_proto(change);
     }

@@ -134,6 +134,9 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     if (entry.storage) {
         *to.mutable_storage() = to_proto(*entry.storage);
     }
+    to.set_owner(entry.ownership.user);
+    to.set_class_(entry.ownership.class_name);
+    to.set_frozen(entry.frozen);
     return to;
 }
 

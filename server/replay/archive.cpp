@@ -226,6 +226,7 @@ Result<std::string> Archive::recover_world(const std::string& path, const run_fi
               was_closed ? "" : "; the previous server did not close this file");
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});
+    entry->ownership = identity.ownership;
     recording::RunRecorder& run = recorder_->resume(name, *std::move(file), contents, generations_ended);
     run.follow(entry->world);
     laboratory_.adopt(std::move(entry));

@@ -35,7 +35,7 @@ std::optional<simulation::RunId> run_id_from(const std::string& text) {
 struct Key {
     std::function<std::string(const StoredIdentity&)> text;
     std::function<bool(const std::string&, StoredIdentity&)> read; // false: the text is not a valid value
-    bool required = true; // if false, an empty text is not written
+    bool required = true;                                          // if false, an empty text is not written
 };
 
 template <class T>
@@ -59,6 +59,15 @@ Key text_key(std::string RunIdentity::*member, bool required) {
                 return true;
             },
             required};
+}
+
+Key owner_key(std::string simulation::Ownership::*member) {
+    return {[member](const StoredIdentity& identity) { return identity.run.ownership.*member; },
+            [member](const std::string& text, StoredIdentity& identity) {
+                identity.run.ownership.*member = text;
+                return true;
+            },
+            false};
 }
 
 /// Reads a set of parameters. Returns false if the text is not valid.
@@ -126,6 +135,9 @@ const std::vector<std::pair<std::string, Key>>& keys() {
               }
               return schedule.has_value();
           }}},
+        {"owner", owner_key(&simulation::Ownership::user)},
+        {"class", owner_key(&simulation::Ownership::class_name)},
+        {"teacher", owner_key(&simulation::Ownership::teacher)},
         {"gene_names",
          {[](const StoredIdentity& identity) {
               std::string names;

@@ -38,6 +38,7 @@ struct RunIdentity {
     std::uint64_t inherited_generations = 0;
     simulation::FirstPopulation first_population = {}; // given to the run or its origin; nullptr: the seed draws it
     parameters::Schedule schedule = {};                // given to the run or its origin
+    simulation::Ownership ownership = {};              // of its world
 
     parameters::RequestedParameters requested_parameters() const {
         return requested ? *requested : parameters::RequestedParameters{parameters};

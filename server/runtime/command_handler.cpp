@@ -4,8 +4,13 @@
 #include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
 #include "server/protocol/answers.h"
+#include "server/protocol/commands.h"
 #include "server/protocol/events.h"
+#include "server/protocol/for_each_world.h"
+#include "server/protocol/request_rules.h"
+#include "server/runtime/admission.h"
 #include "server/runtime/fork.h"
+#include "server/runtime/random_ids.h"
 #include "server/simulation/world_name.h"
 
 #include <algorithm>
@@ -54,6 +59,9 @@ void CommandHandler::handle(CommandMail& mail) {
         },
         mail.command);
     const auto before = run_before(mail.command);
+    if (auto refused = refusal_of_sender(mail)) {
+        return answer(mail, *refused, before);
+    }
     if (auto refused = refusal_of(mail.command)) {
         return answer(mail, *refused, before);
     }
@@ -69,6 +77,59 @@ void CommandHandler::handle(CommandMail& mail) {
             }
         },
         mail.command);
+}
+
+std::optional<base::Refusal> CommandHandler::refusal_of_sender(CommandMail& mail) const {
+    const simulation::Entry* world = entry_of_command(mail.command);
+    const bool decides_without = std::visit(
+        [this](const auto& command) {
+            if constexpr (requires { command.world; }) {
+                return laboratory_.find_damaged(command.world) != nullptr;
+            }
+            return true; // CreateWorld
+        },
+        mail.command);
+    return world != nullptr || decides_without ? admit(mail, world) : std::nullopt;
+}
+
+void CommandHandler::handle(const ForEachWorld& mail) {
+    std::vector<std::string> worlds;
+    for (const auto& entry : laboratory_.entries()) {
+        const bool is_fork = entry->name != simulation::first_world_of(entry->name, mail.class_name);
+        if (entry->ownership.class_name == mail.class_name && (!is_fork || protocol::acts_on_forks(*mail.request))) {
+            worlds.push_back(entry->name);
+        }
+    }
+    outputs_.reply(BatchBegun{mail.batch, worlds});
+    for (const std::string& world : worlds) {
+        const v1::Request request = protocol::request_for(*mail.request, world);
+        auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+        EVOD_ASSERT(command.has_value()); // the network thread has checked it
+        if (auto* change = std::get_if<simulation::SetParameters>(&*command)) {
+            change->by = mail.by;
+        }
+        CommandMail one{.command = *std::move(command),
+                        .origin = {.by = mail.by,
+                                   .client_key = protocol::key_for(request.client_key(), world),
+                                   .request_id = request.request_id(),
+                                   .request = request.SerializeAsString()},
+                        .request_name = protocol::name_of(request),
+                        .session = mail.session,
+                        .user = mail.user,
+                        .requester = mail.requester,
+                        .rules = protocol::rules_of(request),
+                        .batch = mail.batch};
+        handle(one);
+    }
+}
+
+void CommandHandler::handle(const SetClass& mail) {
+    ClassSet done{mail.number};
+    for (const std::string& world : laboratory_.set_class(mail.name, mail.rules)) {
+        changed_.push_back(world);
+        done.events.push_back(protocol::run_control_event(**laboratory_.find(world), mail.by));
+    }
+    outputs_.reply(std::move(done));
 }
 
 bool CommandHandler::waits_for_a_world(const simulation::Command& command) const {
@@ -171,8 +232,14 @@ void CommandHandler::construct(CommandMail& mail, const std::optional<RunBefore>
             order.original = command.world;
         }
     }
-    order.finish = [name = order.name, command, is_recorded = recorder_ != nullptr, before](simulation::World world,
-                                                                                            base::Executor& workers) {
+    simulation::Ownership ownership;
+    if constexpr (std::is_same_v<C, simulation::ResetWorld>) {
+        ownership = entry_of_command(mail.command)->ownership;
+    } else {
+        ownership = command.ownership;
+    }
+    order.finish = [name = order.name, command, is_recorded = recorder_ != nullptr, before,
+                    ownership](simulation::World world, base::Executor& workers) {
         if constexpr (is_fork) {
             world = world_of_fork(command, std::move(world), workers);
         }
@@ -181,6 +248,7 @@ void CommandHandler::construct(CommandMail& mail, const std::optional<RunBefore>
             built.beginning =
                 is_fork ? run_file::beginning_of_fork(built.world, name, command.run_id, before->run_id, workers)
                         : run_file::beginning_of_run(built.world, name, command.run_id);
+            built.beginning->identity.ownership = ownership;
         }
         return built;
     };

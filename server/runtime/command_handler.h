@@ -34,6 +34,8 @@ class CommandHandler {
         , runs_{runs} {}
 
     void handle(CommandMail& mail);
+    void handle(const ForEachWorld& mail);
+    void handle(const SetClass& mail);
     /// Handles the mail of the build thread.
     void take(const WorldBuilt& built);
     // Handle the mail about the worlds that come from the loop of the replays.
@@ -64,6 +66,8 @@ class CommandHandler {
     void construct(CommandMail& mail, const std::optional<RunBefore>& before,
                    base::Result<simulation::Construction> construction);
     const simulation::Entry* entry_of_command(const simulation::Command& command) const;
+    /// Returns why the sender may not send the command; nullopt if the sender may, or if there is no such world.
+    std::optional<base::Refusal> refusal_of_sender(CommandMail& mail) const;
     /// Returns why the journal cannot store this command now; nullopt if it can, or if the command need not be stored.
     std::optional<base::Refusal> refusal_of(const simulation::Command& command) const;
     /// beginning  of the run that the command began; nullopt if it began none, or if runs are not stored.

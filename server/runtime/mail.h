@@ -7,9 +7,11 @@
 // Threads      plain data; one thread at a time owns it. A v1::Request is shared, and constant.
 #pragma once
 
+#include "server/access/authorization.h"
 #include "server/recording/receipt.h"
 #include "server/replay/stored_run.h"
 #include "server/run_file/records.h"
+#include "server/simulation/class_rules.h"
 #include "server/simulation/commands.h"
 
 #include <cstdint>
@@ -17,10 +19,7 @@
 #include <optional>
 #include <string>
 #include <variant>
-
-namespace evod::v1 {
-class Request;
-}
+#include <vector>
 
 namespace evod::runtime {
 
@@ -30,6 +29,29 @@ struct CommandMail {
     std::string request_name;  // name of the field in the request: "set_parameters"
     std::uint64_t session = 0; // number of the sender's session; 0: the server itself
     std::string user = {};     // whose quota pays
+    access::Requester requester = {};
+    const v1::RequestRules* rules =
+        nullptr;             // of the request; nullptr: a command of the server itself, which may do everything
+    std::uint64_t batch = 0; // number of the ForEachWorld to which the command belongs; 0: none
+};
+
+/// One command for every world of a class.
+struct ForEachWorld {
+    std::string class_name;
+    std::shared_ptr<const v1::Request> request; // has for_each_world
+    base::Actor by;
+    std::uint64_t session = 0; // number of the sender's session
+    std::string user = {};     // whose quota pays
+    access::Requester requester = {};
+    std::uint64_t batch = 0; // number of this request, >= 1
+};
+
+/// The rules of a class, after it was created, changed or deleted.
+struct SetClass {
+    std::string name;
+    std::optional<simulation::ClassRules> rules; // nullopt: the class is deleted
+    base::Actor by;
+    std::uint64_t number = 0; // for the reply
 };
 
 /// A query that reads the laboratory. The simulation thread answers it between two ticks, when the query budget allows
@@ -45,7 +67,8 @@ struct QueryMail {
 struct FoundRun {
     std::string world = {}; // whose run it is; of a replay: the original world
     replay::StoredRun run;
-    std::uint64_t generation = 0; // generation of the world when the request was handled
+    simulation::Ownership ownership = {}; // of the world
+    std::uint64_t generation = 0;         // generation of the world when the request was handled
     // The file reaches this moment once everything that was recorded is on the disk; zeros if that is not known.
     replay::RecordedUntil until = {};
 };
@@ -138,7 +161,8 @@ struct RecordsRead {
     std::shared_ptr<const base::Result<replay::NewRecords>> records;
 };
 
-using Mail = std::variant<CommandMail, QueryMail, FindRun, ReplayMail, ComputeForkWorld, ForkAnnounced,
-                          ForkWorldComputed, EndReplay, SessionEnded, Ping, WorldBuilt, SeekRead, RecordsRead>;
+using Mail =
+    std::variant<CommandMail, ForEachWorld, SetClass, QueryMail, FindRun, ReplayMail, ComputeForkWorld, ForkAnnounced,
+                 ForkWorldComputed, EndReplay, SessionEnded, Ping, WorldBuilt, SeekRead, RecordsRead>;
 
 } // namespace evod::runtime

@@ -35,7 +35,6 @@ void Pace::follow(simulation::Entry& entry) {
     auto found = world_data_.find(entry.name);
     if (found == world_data_.end()) {
         found = world_data_.emplace(entry.name, WorldData{}).first;
-        found->second.user = rules_.user_of(entry);
         if (const auto wanted = demand_.find(entry.name); wanted != demand_.end()) {
             found->second.snapshots.set_demand(&wanted->second);
         }
@@ -44,6 +43,7 @@ void Pace::follow(simulation::Entry& entry) {
         }
     }
     WorldData& data = found->second;
+    data.user = rules_.user_of(entry);
     if (recorder_) {
         data.recorder = recorder_->of(entry.name);
     }

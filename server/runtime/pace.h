@@ -66,7 +66,7 @@ class Pace {
         /// Whether a world must wait for the disk.
         virtual bool waits_for_disk(const simulation::Entry& world) const = 0;
         /// The user whose account pays for the time of a world.
-        virtual std::string user_of(const simulation::Entry&) const { return {}; }
+        virtual std::string user_of(const simulation::Entry&) const = 0;
         virtual void after_tick(simulation::Entry&) {}
         virtual void advance_seek(std::uint64_t /*seek*/, const std::function<bool()>& /*stop*/) {}
     };

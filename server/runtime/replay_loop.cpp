@@ -3,6 +3,7 @@
 #include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
 #include "server/protocol/worlds.h"
+#include "server/runtime/admission.h"
 #include "server/runtime/fork.h"
 
 #include <algorithm>
@@ -116,6 +117,7 @@ void ReplayLoop::find_run(const FindRun& mail) {
     const std::string& original = (*entry)->replay->replay_of;
     outputs_.reply(RunFound{mail, FoundRun{.world = original.empty() ? (*entry)->name : original,
                                            .run = *run,
+                                           .ownership = (*entry)->ownership,
                                            .generation = (*entry)->world.moment().generation}});
 }
 
@@ -175,7 +177,7 @@ void ReplayLoop::end(const EndReplay& mail) {
     }
 }
 
-bool ReplayLoop::fork(const CommandMail& mail) {
+bool ReplayLoop::fork(CommandMail& mail) {
     const auto* command = std::get_if<simulation::ForkWorld>(&mail.command);
     if (command == nullptr) {
         return false;
@@ -191,6 +193,8 @@ bool ReplayLoop::fork(const CommandMail& mail) {
     }
     if (!entry) {
         send_fork_world(mail, {}, entry.error());
+    } else if (const auto refused = admit(mail, *entry)) {
+        send_fork_world(mail, {}, *refused);
     } else if (begins_in_another_generation(*command, (*entry)->world)) {
         begin_seek(mail, *run, {});
     } else {
@@ -234,6 +238,7 @@ void ReplayLoop::finish(const ReplayMail& mail, const std::string& moved, const 
         result->there.replay_of = mail.run->world;
         name = mail.run->world + "@" + std::to_string(++last_name_);
         shown_.show(name, run, {mail.session, mail.user}, *std::move(result));
+        (*laboratory_.find(name))->ownership = mail.run->ownership;
     } else {
         shown_.move_to(name, *std::move(result));
     }

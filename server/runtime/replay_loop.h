@@ -48,7 +48,7 @@ class ReplayLoop final : public SimulationLoop {
     void open(const ReplayMail& mail, const OpenReplay& request);
     void end(const EndReplay& mail);
     /// Begins the fork of a replay. Returns false if the command is something else.
-    bool fork(const CommandMail& mail);
+    bool fork(CommandMail& mail);
     /// Begins a seek to the generation that a fork begins with.
     void begin_seek(const CommandMail& fork, const replay::StoredRun& run, replay::RecordedUntil until);
     /// Sends the world to the thread of the live worlds.

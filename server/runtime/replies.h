@@ -41,6 +41,18 @@ struct CommandDone {
     std::optional<ForkFile> fork = {}; // nullopt: the command has created no fork, or its file is read back
 };
 
+/// The worlds for which the commands of a ForEachWorld follow.
+struct BatchBegun {
+    std::uint64_t batch = 0;
+    std::vector<std::string> worlds; // in order of creation
+};
+
+/// The rules of a class hold now.
+struct ClassSet {
+    std::uint64_t number = 0;
+    std::vector<v1::Event> events = {}; // of the worlds that are frozen, or go on
+};
+
 struct QueryDone {
     QueryMail mail;
     v1::Response response;
@@ -108,10 +120,10 @@ struct BreedingDone {
 CommandDone refused(CommandDone done, base::Refusal why);
 
 /// What the network thread answers.
-using Answer = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, ReplayEnded, RunFound, Pong,
-                            ExportPartDone, BreedingDone>;
+using Answer = std::variant<CommandDone, BatchBegun, ClassSet, QueryDone, ReplayDone, ReplayMemory, ReplayEnded,
+                            RunFound, Pong, ExportPartDone, BreedingDone>;
 /// What the outbox contains. ForkWorldComputed is on its way to the thread of the live worlds (simulations.h).
-using Reply = std::variant<CommandDone, QueryDone, ReplayDone, ReplayMemory, ReplayEnded, RunFound, Pong,
-                           ExportPartDone, BreedingDone, ForkWorldComputed, recording::Receipt>;
+using Reply = std::variant<CommandDone, BatchBegun, ClassSet, QueryDone, ReplayDone, ReplayMemory, ReplayEnded,
+                           RunFound, Pong, ExportPartDone, BreedingDone, ForkWorldComputed, recording::Receipt>;
 
 } // namespace evod::runtime

@@ -15,6 +15,7 @@ base::Result<FoundRun> RunFinder::run_of(const simulation::Entry& world) const {
     const simulation::Moment& now = world.world.moment();
     return FoundRun{.world = world.name,
                     .run = {recorder_->paths_of(world.name, world.run_id), world.run_id},
+                    .ownership = world.ownership,
                     .generation = now.generation,
                     .until = {.generation = now.generation, .tick = now.tick}};
 }

@@ -52,6 +52,8 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
 
 void SimulationLoop::handle(Mail& mail) {
     std::visit(base::Overloaded{[this](CommandMail& command) { commands_.handle(command); },
+                                [this](ForEachWorld& mail) { commands_.handle(mail); },
+                                [this](SetClass& mail) { commands_.handle(mail); },
                                 [this](QueryMail& query) { queries_.add(std::move(query)); },
                                 [this](FindRun& run) { runs_.find(run); },
                                 [this](ReplayMail& request) { refuse(request); },

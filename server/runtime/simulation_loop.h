@@ -60,6 +60,7 @@ class SimulationLoop : protected Pace::Rules {
   private:
     bool is_held(const simulation::Entry& world) const override { return builds_.holds(world.name); }
     bool waits_for_disk(const simulation::Entry& world) const override { return storage_.holds(world); }
+    std::string user_of(const simulation::Entry& world) const override { return world.ownership.user; }
     /// Answers queries within the budget. Returns the time at which more of them may be answered; nullopt: no query
     /// waits.
     std::optional<Clock::time_point> answer_queries();

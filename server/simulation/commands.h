@@ -50,7 +50,6 @@ struct CreateWorld {
     FirstPopulation first_population = {}; // valid for these parameters
     parameters::Schedule schedule = {};    // without faults (faults_of()); generation 1 as in `parameters`
     Ownership ownership = {};
-    bool frozen = false; // as after FreezeWorld
 };
 struct DeleteWorld {
     std::string world;
@@ -80,11 +79,6 @@ struct Pause {
 };
 struct Resume {
     std::string world;
-};
-/// Stops a world, or lets it go on, whatever its goals and its pause are.
-struct FreezeWorld {
-    std::string world;
-    bool frozen;
 };
 /// A text for the journal. It changes nothing in the world.
 struct AddNote {
@@ -174,7 +168,7 @@ struct ForkWorld {
 };
 
 using Command =
-    std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume, FreezeWorld,
-                 AddNote, SetSpeed, SetParameters, CancelChange, PlaceEntities, RemoveEntities, SetFitness, ForkWorld>;
+    std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume, AddNote,
+                 SetSpeed, SetParameters, CancelChange, PlaceEntities, RemoveEntities, SetFitness, ForkWorld>;
 
 } // namespace evod::simulation

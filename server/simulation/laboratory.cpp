@@ -139,7 +139,7 @@ bool remove_reached_goals(RunControl& control, const World& world) {
 }
 
 bool Entry::wants_tick() const {
-    return !world.awaits_fitness() && wants_to_run();
+    return !frozen && !world.awaits_fitness() && wants_to_run();
 }
 
 bool Entry::wants_to_run() const {
@@ -346,7 +346,7 @@ Result<Construction> Laboratory::construction(const CreateWorld& command) const 
 }
 
 Result<Applied> Laboratory::adopt(const CreateWorld& command, World world) {
-    return add(command.name, command.run_id, std::move(world));
+    return add(command.name, command.run_id, std::move(world), command.ownership);
 }
 
 Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
@@ -480,6 +480,10 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Resume&) {
     return applied_now(entry);
 }
 
+Result<Applied> Laboratory::carry_out(Entry& entry, const AddNote&) {
+    return applied_now(entry); // the journal contains the note
+}
+
 Result<Applied> Laboratory::carry_out(Entry& entry, const SetSpeed& command) {
     entry.control.speed = command.speed;
     return applied_now(entry);
@@ -508,6 +512,14 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
                        : parameters::request_of)(world.parameters(), command.assignments, "set_parameters.");
     if (!requested) {
         return requested.error();
+    }
+    if (const ClassRules* rules = class_of(entry)) {
+        if (auto outside = values_outside(*rules, entry.ownership.class_name, command.assignments, "set_parameters.");
+            !outside.empty()) {
+            return Refusal{.code = RefusalCode::InvalidArgument,
+                           .message = "the ranges of the class are narrower",
+                           .violations = std::move(outside)};
+        }
     }
     if (command.at) {
         parameters::PlannedChange change{
@@ -588,6 +600,9 @@ Result<Construction> Laboratory::construction(const ForkWorld& command) const {
     if (auto refused = refusal_of(command.name)) {
         return *refused;
     }
+    if (auto refused = refusal_of_fork(command)) {
+        return *refused;
+    }
     const World& world = (*found)->world;
     return Construction{
         .construct = [&world, maker = maker_](base::Executor& executor) { return world.copy(executor, maker); },
@@ -601,15 +616,21 @@ Result<Applied> Laboratory::adopt(const ForkWorld& command, World world) {
     share(world, executor);
     (void)world.take_events(); // the events of the original have already been reported
     world.become_fork();
-    return add(command.name, command.run_id, std::move(world));
+    if (auto refused = refusal_of_fork(command)) {
+        return *refused;
+    }
+    return add(command.name, command.run_id, std::move(world), command.ownership);
 }
 
-Result<Applied> Laboratory::add(const std::string& name, const RunId& run_id, World world) {
+Result<Applied> Laboratory::add(const std::string& name, const RunId& run_id, World world, Ownership ownership) {
     if (auto refused = refusal_of(name)) {
         return *refused;
     }
     auto entry = std::make_unique<Entry>(Entry{name, run_id, RunControl{}, std::move(world)});
     entry->storage = storage_;
+    entry->ownership = std::move(ownership);
+    const ClassRules* rules = class_of(*entry);
+    entry->frozen = rules != nullptr && rules->frozen;
     Applied applied = applied_now(*entry);
     entries_.push_back(std::move(entry)); // last, so that nothing needs to be undone if memory does not suffice
     return applied;

@@ -7,11 +7,13 @@
 
 #include "server/base/executor.h"
 #include "server/base/result.h"
+#include "server/simulation/class_rules.h"
 #include "server/simulation/commands.h"
 #include "server/simulation/events.h"
 #include "server/simulation/world.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,7 +22,7 @@
 
 namespace evod::simulation {
 
-constexpr std::size_t worlds_max_by_default = 64;
+constexpr std::size_t worlds_max_by_default = 256;
 
 enum class RunState { Waiting, Running, Paused, Terminated };
 
@@ -72,6 +74,8 @@ struct Entry {
     bool slowed = false;                           // the machine does not reach the requested speed
     std::optional<Replay> replay = std::nullopt;   // nullopt: a live world; otherwise the world is a replay
     std::optional<Storage> storage = std::nullopt; // nullopt: the world's run is not stored
+    Ownership ownership = {};
+    bool frozen = false; // as in the rules of its class
 
     /// Returns whether this is a replay whose original world is in the laboratory. find() finds such a replay only by
     /// its own name.
@@ -80,7 +84,7 @@ struct Entry {
     RunState state() const;
     /// Returns whether the world has a goal that it has not reached, and is not paused.
     bool wants_to_run() const;
-    /// Returns whether the world should advance: it wants to run, and it does not await fitness from clients.
+    /// Returns whether the world should advance: it wants to run, is not frozen, and does not await fitness from clients.
     bool wants_tick() const;
 };
 
@@ -176,6 +180,12 @@ class Laboratory {
     /// Returns the damaged world with that name, with the same meaning of an empty name; nullptr if there is none.
     const DamagedWorld* find_damaged(std::string_view name) const;
 
+    /// Sets the rules of a class, also for worlds that are created later. nullopt: the class exists no more. Returns the
+    /// names of the worlds that are frozen or go on by this.
+    std::vector<std::string> set_class(const std::string& name, std::optional<ClassRules> rules);
+    /// The rules of the class to which a world belongs; nullptr: it belongs to none that has rules.
+    const ClassRules* class_of(const Entry& entry) const;
+
     /// Sets the number of worlds from which on none can be created.
     void set_worlds_max(std::size_t worlds_max) { worlds_max_ = worlds_max; }
     /// Returns whether the laboratory has that many worlds, not counting replays whose original world is in it.
@@ -200,13 +210,16 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const ReleaseLease&);
     base::Result<Applied> carry_out(Entry& entry, const Pause&);
     base::Result<Applied> carry_out(Entry& entry, const Resume&);
+    base::Result<Applied> carry_out(Entry& entry, const AddNote&);
     base::Result<Applied> carry_out(Entry& entry, const SetSpeed&);
     base::Result<Applied> carry_out(Entry& entry, const SetParameters&);
     base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
     base::Result<Applied> carry_out(Entry& entry, const PlaceEntities&);
     base::Result<Applied> carry_out(Entry& entry, const RemoveEntities&);
     base::Result<Applied> carry_out(Entry& entry, const SetFitness&);
-    base::Result<Applied> add(const std::string& name, const RunId& run_id, World world);
+    base::Result<Applied> add(const std::string& name, const RunId& run_id, World world, Ownership ownership);
+    /// Returns why the owner cannot have a fork of that name; nullopt if he can.
+    std::optional<base::Refusal> refusal_of_fork(const ForkWorld& command) const;
     /// The number of worlds, not counting replays whose original world is in the laboratory.
     std::size_t world_count() const;
     /// Returns the name itself or, if it is empty, the name that it means.
@@ -223,6 +236,7 @@ class Laboratory {
     std::vector<Event> events_;
     std::size_t worlds_max_ = worlds_max_by_default;
     std::optional<Storage> storage_;
+    std::map<std::string, ClassRules, std::less<>> classes_;
     IslandsMaker* maker_ = nullptr; // nullptr: all islands are in this process
     std::uint64_t leases_granted_ =
         0; // a number is never used again, also after a reset or a new world of the same name

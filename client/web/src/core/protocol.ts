@@ -1046,8 +1046,6 @@ export interface RequestKinds {
   add_note: AddNote;
   /** The teacher of the class may send it. */
   for_each_world: ForEachWorld;
-  /** Part of an UpdateClass; clients below admin change `frozen` with that request. */
-  freeze_world: FreezeWorld;
   cancel_change: CancelChange;
   place: Place;
   remove: Remove;
@@ -1219,8 +1217,8 @@ export interface ResetWorld {
 /** Copies a world as one of its generations was bred, before the first tick and without the commands since, or at the
  *  current tick. The copy has the seed, organisms, parameters and schedule that the world had at that moment. The copy
  *  waits for Run. Before the answer, the server reads the run file of the copy back. The copy belongs to the user who sent
- *  the request. Whoever may send it only as owner or teacher chooses a name that begins with the name of the world up to its
- *  second `_`, and another `_`: "bio2_red-fox_2". */
+ *  the request. A fork of a world of a class gets a name that begins with that of the world up to its second `_`, and
+ *  another `_`, unless an admin forks it: "bio2_red-fox_2". */
 export interface ForkWorld {
   /** the world to copy; it may be a replay */
   world?: string;
@@ -1305,12 +1303,6 @@ export interface AddNote {
   kind?: string;
   /** 1 to 4,096 bytes of UTF-8 */
   text?: string;
-}
-
-/** Stops a world, or lets it go on, whatever its RunState is. While it is frozen, its owner cannot change it. */
-export interface FreezeWorld {
-  world?: string;
-  frozen?: boolean;
 }
 
 /** The oneof `action` of ForEachWorld: exactly one of these.
@@ -2265,7 +2257,6 @@ export interface Answers {
   release_lease: WorldInfo;
   add_note: WorldInfo;
   for_each_world: WorldResults;
-  freeze_world: WorldInfo;
   cancel_change: PlannedChange;
   place: Placed;
   remove: Removed;
@@ -2378,7 +2369,6 @@ export interface Messages {
   "evod.v1.SetParameters": SetParameters;
   "evod.v1.CancelChange": CancelChange;
   "evod.v1.AddNote": AddNote;
-  "evod.v1.FreezeWorld": FreezeWorld;
   "evod.v1.ForEachWorld": ForEachWorld;
   "evod.v1.WorldResults": WorldResults;
   "evod.v1.WorldResult": WorldResult;
