@@ -24,15 +24,15 @@ struct RequestedWorld {
     bool frozen = false; // as in the rules of its class
 };
 
-/// The lowest role that may send a request with these rules whatever world it names. If the rules state no role, an admin
-/// is needed.
+/// The lowest role that may send a request with these rules, whatever world it names. If the rules state no role, an
+/// admin is needed.
 Role role_needed(const v1::RequestRules& rules, bool in_own_replay);
 
 /// Whether the requester is the owner of the world or the teacher of its class.
 bool owns(const Requester& requester, const simulation::Ownership& ownership);
 
-/// Refuses with PERMISSION_DENIED if neither the role of the requester nor the owner of the world permits the request, and
-/// with FAILED_PRECONDITION if the requester is only the owner, and the world is frozen.
+/// Refuses with PERMISSION_DENIED if neither the role of the requester nor the owner of the world permits the request,
+/// and with FAILED_PRECONDITION if the requester is only the owner, and the world is frozen.
 ///
 /// request  name of the request, for the refusal.
 /// world    nullptr: it is not known yet. The request is then permitted if it depends on the world.

@@ -6,8 +6,8 @@ std::optional<base::Refusal> admit(CommandMail& mail, const simulation::Entry* w
     if (mail.rules == nullptr) {
         return std::nullopt;
     }
-    const simulation::Ownership nobody;
-    const access::RequestedWorld requested{world != nullptr ? world->ownership : nobody,
+    const simulation::Ownership no_user;
+    const access::RequestedWorld requested{world != nullptr ? world->ownership : no_user,
                                            world != nullptr && world->frozen};
     if (const auto permitted = access::may(mail.requester, *mail.rules, mail.request_name, &requested); !permitted) {
         return permitted.error();
@@ -15,7 +15,7 @@ std::optional<base::Refusal> admit(CommandMail& mail, const simulation::Entry* w
     if (auto* created = std::get_if<simulation::CreateWorld>(&mail.command)) {
         created->ownership = {.user = mail.requester.user, .class_name = {}, .teacher = {}};
     } else if (auto* fork = std::get_if<simulation::ForkWorld>(&mail.command)) {
-        fork->ownership = access::owns(mail.requester, requested.ownership) ? requested.ownership : nobody;
+        fork->ownership = access::owns(mail.requester, requested.ownership) ? requested.ownership : no_user;
         fork->ownership.user = mail.requester.user;
     }
     return std::nullopt;

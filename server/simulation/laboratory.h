@@ -84,7 +84,7 @@ struct Entry {
     RunState state() const;
     /// Returns whether the world has a goal that it has not reached, and is not paused.
     bool wants_to_run() const;
-    /// Returns whether the world should advance: it wants to run, is not frozen, and does not await fitness from clients.
+    /// Returns whether the world should advance: it wants to run, is not frozen, and awaits no fitness from clients.
     bool wants_tick() const;
 };
 
@@ -180,7 +180,7 @@ class Laboratory {
     /// Returns the damaged world with that name, with the same meaning of an empty name; nullptr if there is none.
     const DamagedWorld* find_damaged(std::string_view name) const;
 
-    /// Sets the rules of a class, also for worlds that are created later. nullopt: the class exists no more. Returns the
+    /// Sets the rules of a class, also for worlds that are created later. nullopt: the class is deleted. Returns the
     /// names of the worlds that are frozen or go on by this.
     std::vector<std::string> set_class(const std::string& name, std::optional<ClassRules> rules);
     /// The rules of the class to which a world belongs; nullptr: it belongs to none that has rules.

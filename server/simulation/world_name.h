@@ -27,8 +27,8 @@ constexpr std::string_view original_of(std::string_view replay) {
     return replay.substr(0, replay.find('@'));
 }
 
-/// The world with which a member of a class begins has the name CLASS_MEMBER, without another _ in either part. The forks
-/// of the member have names that begin with it and another _.
+/// The world with which a member of a class begins has the name CLASS_MEMBER, without another _ in either part. The
+/// forks of the member have names that begin with it and another _.
 ///
 /// world  a world of this class.
 constexpr std::string_view first_world_of(std::string_view world, std::string_view class_name) {

@@ -29,7 +29,7 @@ std::vector<NamedRules> all_requests() {
     return requests;
 }
 
-const simulation::Ownership nobodys;
+const simulation::Ownership of_no_user;
 const simulation::Ownership of_ann{.user = "bio/ann", .class_name = "bio", .teacher = "kant"};
 
 bool permits(const Requester& requester, const NamedRules& request, const simulation::Ownership& ownership,
@@ -93,7 +93,7 @@ TEST(Authorization, TheWholeMatrix) {
                         const bool by_ownership = request.rules.by_owner() && (user.teaches || (user.owns && !frozen));
                         EXPECT_EQ(permits(requester, request, of_ann, frozen), by_role || by_ownership)
                             << user.name << " as " << name_of(role) << ": " << request.name << ", frozen " << frozen;
-                        EXPECT_EQ(permits(requester, request, nobodys, frozen), by_role)
+                        EXPECT_EQ(permits(requester, request, of_no_user, frozen), by_role)
                             << user.name << " as " << name_of(role) << ": " << request.name;
                         // What is permitted for some world must reach the thread that knows the world.
                         EXPECT_EQ(may(requester, request.rules, request.name, nullptr).has_value(),
@@ -146,8 +146,8 @@ TEST(Authorization, InAFrozenClassOwnersWaitAndTeachersDoNot) {
     EXPECT_TRUE(may({"root", Role::Admin}, rules, "pause", &world));
 }
 
-TEST(Authorization, WithoutATokenNobodyOwnsAWorldWithoutAnOwner) {
-    EXPECT_FALSE(owns({"", Role::Viewer}, nobodys));
+TEST(Authorization, WithoutATokenNoUserOwnsAWorld) {
+    EXPECT_FALSE(owns({"", Role::Viewer}, of_no_user));
 }
 
 } // namespace

@@ -2002,7 +2002,7 @@ export interface QuotaRange {
 /** Changes a class: all that is set, or nothing. */
 export interface UpdateClass {
   class?: string;
-  /** true: makes the code valid for 20 minutes, and the class open. false: nobody can join. */
+  /** true: makes the code valid for 20 minutes, and the class open. false: no student can join. */
   open?: boolean;
   /** replaces the code */
   new_code?: boolean;
@@ -2044,7 +2044,7 @@ export interface ClassInfo {
   lesson?: string;
   /** in the order in which they joined */
   members?: ClassMember[];
-  /** Wrong codes arrive so fast that joining is slowed for the whole server: somebody may be guessing. */
+  /** Wrong codes arrive so fast that joining is slowed for the whole server: a client may be guessing. */
   codes_are_guessed?: boolean;
 }
 
