@@ -53,6 +53,7 @@ int main(int argument_count, char** arguments) {
     add_compare_command(app);
     add_sweep_command(app);
     add_check_command(app);
+    add_lesson_command(app);
     add_fork_command(app);
     add_replay_command(app);
     add_verify_command(app);

@@ -22,6 +22,7 @@ void add_run_command(command_line::Command& app);
 void add_compare_command(command_line::Command& app);
 void add_sweep_command(command_line::Command& app);
 void add_check_command(command_line::Command& app);
+void add_lesson_command(command_line::Command& app);
 void add_check_config_command(command_line::Command& app);
 void add_fork_command(command_line::Command& app);
 void add_replay_command(command_line::Command& app);

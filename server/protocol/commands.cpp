@@ -6,6 +6,7 @@
 #include "server/protocol/gene_list.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
+#include "server/protocol/queries.h"
 #include "server/protocol/ratings.h"
 #include "server/protocol/refusals.h"
 #include "server/simulation/founders.h"
@@ -387,6 +388,11 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
             violations.push_back({"get_history.last_generation",
                                   "at least first_generation (" + std::to_string(query.first_generation()) + ")",
                                   std::to_string(query.last_generation())});
+        }
+    } else if (request.has_observe()) {
+        if (const int count = request.observe().expressions_size(); count < 1 || count > int{expressions_max}) {
+            violations.push_back({"observe.expressions", "1 to " + std::to_string(expressions_max) + " expressions",
+                                  std::to_string(count)});
         }
     } else if (request.has_subscribe_snapshots()) {
         add_faults(request.subscribe_snapshots(), violations);

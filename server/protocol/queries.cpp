@@ -196,6 +196,53 @@ v1::History to_proto(const HistoryPart& part) {
     return history;
 }
 
+base::Result<ObservedHistory> get_observed(const simulation::Laboratory& laboratory, const v1::Observe& query) {
+    const auto entry = laboratory.find(lookup_name(query.world()));
+    if (!entry) {
+        return entry.error();
+    }
+    const simulation::World& world = (*entry)->world;
+    ObservedHistory observed{.observations = {}, .history = world.history(), .parameters = world.parameters().active};
+    const simulation::ObservedColumns columns{observed.parameters};
+    std::vector<base::Violation> violations;
+    for (int i = 0; i < query.expressions_size(); ++i) {
+        auto parsed = simulation::Observation::parse(query.expressions(i), columns,
+                                                     "observe.expressions[" + std::to_string(i) + "]");
+        if (parsed) {
+            observed.observations.push_back(*std::move(parsed));
+        } else {
+            const base::Refusal refused = parsed.error();
+            violations.insert(violations.end(), refused.violations.begin(), refused.violations.end());
+        }
+    }
+    if (!violations.empty()) {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "invalid expressions",
+                             .violations = std::move(violations)};
+    }
+    return observed;
+}
+
+base::Result<v1::Observations> to_proto(const ObservedHistory& observed) {
+    v1::Observations answer;
+    std::uint64_t steps_left = simulation::Observation::steps_max;
+    for (const simulation::Observation& observation : observed.observations) {
+        v1::Observation& added = *answer.add_observations();
+        if (const auto value = observation.value({observed.history, observed.parameters}, steps_left)) {
+            added.set_value(*value);
+        }
+    }
+    if (steps_left == 0) {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "the expressions read too many numbers",
+                             .violations = {{"observe.expressions",
+                                             "at most " + std::to_string(simulation::Observation::steps_max) +
+                                                 " numbers: name ranges of generations, or send fewer expressions",
+                                             "more"}}};
+    }
+    return answer;
+}
+
 /// Returns PopulationRows::fitness.
 std::vector<double> known_fitness(const simulation::World& world, const simulation::Island& island, base::Range ids) {
     const parameters::FitnessFunction function = world.parameters().active.fitness;
@@ -385,6 +432,8 @@ QueryResult answer_query(const v1::Request& request, const simulation::Laborator
         break;
     case v1::Request::kGetHistory:
         return later(get_history(laboratory, request.get_history(), users_only));
+    case v1::Request::kObserve:
+        return later(get_observed(laboratory, request.observe()));
     case v1::Request::kGetPopulation:
         return later(get_population(laboratory, request.get_population()));
     case v1::Request::kSubscribeSnapshots:
@@ -405,6 +454,12 @@ QueryResult answer_query(const v1::Request& request, const simulation::Laborator
 void add_rows(const QueryResult& result, v1::Response& response) {
     if (const auto* part = std::get_if<HistoryPart>(&result)) {
         *response.mutable_history() = to_proto(*part);
+    } else if (const auto* observed = std::get_if<ObservedHistory>(&result)) {
+        if (auto answer = to_proto(*observed)) {
+            *response.mutable_observations() = *std::move(answer);
+        } else {
+            *response.mutable_status() = to_proto(answer.error());
+        }
     } else if (const auto* columns = std::get_if<PopulationRows>(&result)) {
         *response.mutable_population() = to_proto(*columns);
     }
@@ -417,6 +472,11 @@ std::size_t row_bytes(const QueryResult& result) {
             bytes += sizeof change + change.values.size() * sizeof(simulation::ChangedValue);
         }
         return bytes;
+    }
+    if (const auto* observed = std::get_if<ObservedHistory>(&result)) {
+        return observed->history.size() * sizeof(simulation::GenerationRows) +
+               observed->observations.size() * simulation::Observation::bytes_max *
+                   sizeof(simulation::Observation::Node);
     }
     if (const auto* rows = std::get_if<PopulationRows>(&result)) {
         return static_cast<std::size_t>(rows->genes.size()) * sizeof(float) +

@@ -7,6 +7,7 @@
 #include "evod/v1/commands.pb.h"
 #include "server/base/result.h"
 #include "server/simulation/laboratory.h"
+#include "server/simulation/observation.h"
 
 #include <cstddef>
 #include <optional>
@@ -42,6 +43,19 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
                                       bool users_only);
 v1::History to_proto(const HistoryPart& part);
 
+/// Maximum number of expressions in an Observe.
+constexpr std::size_t expressions_max = 32;
+
+/// The expressions of an Observe, and what they read. The history shares the memory of the world.
+struct ObservedHistory {
+    std::vector<simulation::Observation> observations;
+    simulation::History history;
+    parameters::Parameters parameters;
+};
+base::Result<ObservedHistory> get_observed(const simulation::Laboratory& laboratory, const v1::Observe& query);
+/// Evaluates the expressions. Refused if they would take too long.
+base::Result<v1::Observations> to_proto(const ObservedHistory& observed);
+
 /// A copy of the columns of an island's organisms, so the simulation does not wait for the conversion.
 struct PopulationRows {
     std::uint64_t generation, generation_tick;
@@ -71,7 +85,7 @@ base::Result<FoundWorld> find_world(const simulation::Laboratory& laboratory, co
 
 /// What the network thread still has to do for a request: convert copied rows, or apply the request to the world;
 /// monostate: the response is complete.
-using QueryResult = std::variant<std::monostate, HistoryPart, PopulationRows, FoundWorld>;
+using QueryResult = std::variant<std::monostate, HistoryPart, ObservedHistory, PopulationRows, FoundWorld>;
 
 /// Answers a request that reads the laboratory. If the request is refused, the response contains the refusal.
 ///
