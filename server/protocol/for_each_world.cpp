@@ -3,6 +3,8 @@
 #include "server/base/assert.h"
 #include "server/protocol/commands.h"
 
+#include <google/protobuf/descriptor.h>
+
 #include <utility>
 
 namespace evod::protocol {
@@ -58,6 +60,15 @@ std::optional<base::Refusal> refusal_of_action(const v1::Request& for_each_world
     }
     if (each.action_case() == v1::ForEachWorld::ACTION_NOT_SET) {
         return invalid({{"for_each_world.action", "an action", "nothing"}});
+    }
+    const auto* action = v1::ForEachWorld::GetReflection()->GetOneofFieldDescriptor(
+        each, v1::ForEachWorld::descriptor()->FindOneofByName("action"));
+    const auto& message = each.GetReflection()->GetMessage(each, action);
+    if (const auto world =
+            message.GetReflection()->GetString(message, action->message_type()->FindFieldByName("world"));
+        !world.empty()) {
+        return invalid(
+            {{"for_each_world." + action->name() + ".world", "nothing: the action is for all worlds", world}});
     }
     const auto command = to_command(request_for(for_each_world, "any"), {});
     if (command) {

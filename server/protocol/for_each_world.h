@@ -19,8 +19,8 @@ v1::Request request_for(const v1::Request& for_each_world, const std::string& wo
 /// Returns what is wrong in a ForEachWorld, whatever the worlds are; nullopt if nothing is.
 std::optional<base::Refusal> refusal_of_action(const v1::Request& for_each_world);
 
-/// The client_key in the journal of one world: that of the request, and the name of the world. No client sends such a key,
-/// because it contains a separator.
+/// The client_key in the journal of one world: that of the request, and the name of the world. It is longer than the
+/// keys of clients.
 std::string key_for(std::string_view client_key, std::string_view world);
 /// The client_key of the ForEachWorld to which a key in a journal belongs; nullopt: the key belongs to another command.
 std::optional<std::string> key_of_batch(std::string_view key);
