@@ -23,6 +23,9 @@ struct StorageLimits {
     std::optional<std::uint64_t> disk_bytes_max = {}; // of the whole folder; above it, nothing is written
 };
 
+/// The same, at most, of the worlds of a class.
+constexpr std::uint64_t class_runs_kept = 16;
+
 class DiskState {
   public:
     static constexpr std::size_t waiting_bytes_max = 64 << 20;

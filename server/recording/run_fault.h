@@ -21,6 +21,7 @@ struct RunFault {
     enum class Kind {
         Displaced, // the file was moved or deleted; the storage thread retries until it is back
         Damaged,   // final: nothing is written to the file any more
+        Full,      // the file can be written, but it is so large that the run of a member of a class must not go on
     };
     Kind kind = Kind::Displaced;
     base::Refusal why;

@@ -112,6 +112,7 @@ Result<bool> RunLog::open() {
         return fail(opened.error());
     }
     file = *std::move(opened);
+    of_class = file->is_of_class();
     name.forget();
     if (!creation) {
         (void)name.check(path, std::chrono::steady_clock::now()); // remembers the file that was opened
@@ -167,6 +168,7 @@ Result<void> RunLog::shrink() {
         log::warn("{} is larger than --file-bytes-max: the data that is always retained exceeds this limit", path);
         large_reported = true;
     }
+    full = file->is_full();
     return {};
 }
 

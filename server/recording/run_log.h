@@ -82,6 +82,8 @@ struct RunLog {
     bool compressing = false; // one checkpoint of this run is on the job queue
     LogCopy log_copy = {};
     bool large_reported = false;
+    bool of_class = false; // the world belongs to a class; known when the file is open
+    bool full = false;     // RunFile::is_full()
     FileNameWatch name = {};
     std::optional<RunFault> fault = {};
     std::chrono::steady_clock::time_point retry_at = {}; // when a displaced file is tried again

@@ -19,6 +19,10 @@ namespace {
 
 using Runs = std::map<RunNumber, RunLog>;
 
+const std::string full_file_text = "the run file has reached " +
+                                   std::to_string(2 * run_file::RunFile::class_file_bytes_max >> 20) +
+                                   " MiB, the most of a world in a class: reset the world, or delete it";
+
 /// Whether the run must not be tried now.
 bool waits_for_its_file(const RunLog& run) {
     return run.fault && !run.is_damaged() && !run.retry_is_due;
@@ -37,6 +41,9 @@ RunFaults faults_of(const Runs& runs) {
     for (const auto& [number, run] : runs) {
         if (run.fault) {
             faults.emplace(number, *run.fault);
+        } else if (run.full) {
+            faults.emplace(number, RunFault{.kind = RunFault::Kind::Full,
+                                            .why = refusal(base::RefusalCode::ResourceExhausted, full_file_text)});
         }
     }
     return faults;
@@ -331,21 +338,26 @@ bool StorageWorker::end(RunLog& run) {
 }
 
 void StorageWorker::prune(const RunLog& ended) {
-    const auto keep = disk_.limits().keep_runs;
+    auto keep = disk_.limits().keep_runs;
+    std::string rule = "--keep-runs " + std::to_string(keep.value_or(0));
+    if (ended.of_class && keep.value_or(class_runs_kept) >= class_runs_kept) {
+        keep = class_runs_kept;
+        rule = "the newest " + std::to_string(class_runs_kept) + " ended runs of a world in a class stay";
+    }
     if (!keep || ended.closing->renamed.empty()) {
         return;
     }
     const std::string world = run_file::world_of(ended.path);
     const auto deleted = run_file::prune(std::filesystem::path{ended.path}.parent_path().string(), *keep, world);
     if (!deleted) {
-        log::warn({.world = world}, "--keep-runs: {}", deleted.error().message);
+        log::warn({.world = world}, "{}: {}", rule, deleted.error().message);
         return;
     }
     for (const std::string& failure : deleted->failures) {
-        log::warn({.world = world}, "--keep-runs: {}", failure);
+        log::warn({.world = world}, "{}: {}", rule, failure);
     }
     for (const run_file::EndedRun& run : deleted->deleted) {
-        log::info({.world = world}, "--keep-runs {}: deleted {}", *keep, run.path);
+        log::info({.world = world}, "{}: deleted {}", rule, run.path);
     }
 }
 

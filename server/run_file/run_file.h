@@ -40,6 +40,8 @@ class RunFile : public RunContents {
         std::size_t part_bytes = 256 << 10;
         std::uint32_t log_pages_max = 1000; // a log with more pages is copied into its file
     };
+    /// As Options::file_bytes_max, of the worlds of a class.
+    static constexpr std::int64_t class_file_bytes_max = std::int64_t{32} << 20;
     using Record = std::variant<JournalEntry, Inherited, GenerationBegun, GenerationEnded, HashRecord, Checkpoint,
                                 StoredCheckpoint, EndMark>;
 
@@ -91,7 +93,11 @@ class RunFile : public RunContents {
     /// Reduces the retention if the file exceeds Options::file_bytes_max. Not allowed between begin() and commit(). The
     /// file may still exceed the limit afterwards, because the journal and all statistics stay.
     base::Result<void> shrink_if_large();
-    bool is_large() { return retention_.exceeds(options_.file_bytes_max); }
+    bool is_large() { return retention_.exceeds(file_bytes_max()); }
+    /// Whether the run of a world of a class has so much data that is always retained that it must not go on.
+    bool is_full() { return is_of_class() && retention_.exceeds(2 * class_file_bytes_max); }
+    /// Whether the world of the run belongs to a class.
+    bool is_of_class() const { return !identity().ownership.class_name.empty(); }
     /// Copies all committed pages from the log into the file.
     base::Result<void> merge_log();
 
@@ -99,6 +105,10 @@ class RunFile : public RunContents {
     RunFile(const std::string& path, Database::Mode mode, const Options& options);
     base::Result<void> read_beginning();
     void put(EndMark mark);
+
+    std::int64_t file_bytes_max() const {
+        return is_of_class() ? std::min(options_.file_bytes_max, class_file_bytes_max) : options_.file_bytes_max;
+    }
 
     const Options options_;
     std::optional<TableWriter<StateHashTable>> hash_writer_;

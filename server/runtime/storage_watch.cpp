@@ -6,6 +6,14 @@
 #include <utility>
 
 namespace evod::runtime {
+namespace {
+
+simulation::Storage storage_of(const recording::RunFault& fault) {
+    const bool is_full = fault.kind == recording::RunFault::Kind::Full;
+    return {is_full ? simulation::StorageState::Behind : simulation::StorageState::Stalled, fault.why.message};
+}
+
+} // namespace
 
 StorageWatch::StorageWatch(simulation::Laboratory& laboratory, recording::Recorder* recorder, const WorldBuilds& builds,
                            const LoopOutputs& outputs)
@@ -57,13 +65,13 @@ void StorageWatch::poll_disk(Clock::time_point at) {
 }
 
 std::optional<base::Refusal> StorageWatch::refusal_of(const std::string& world) const {
-    const auto found = displaced_.find(world);
-    if (found == displaced_.end()) {
+    const auto found = faults_.find(world);
+    if (found == faults_.end() || found->second.kind == recording::RunFault::Kind::Full) {
         return std::nullopt;
     }
     return base::refusal(base::RefusalCode::Unavailable,
                          "the world accepts no commands because the server cannot record them: " +
-                             found->second.message + "; send the command again when the file can be written");
+                             found->second.why.message + "; send the command again when the file can be written");
 }
 
 void StorageWatch::stop_damaged(const std::string& world, const base::Refusal& why) {
@@ -76,29 +84,27 @@ void StorageWatch::stop_damaged(const std::string& world, const base::Refusal& w
 }
 
 void StorageWatch::poll_files() {
-    std::map<std::string, base::Refusal> displaced;
+    std::map<std::string, recording::RunFault> faults;
     for (const auto& [name, fault] : recorder_->faults()) {
-        if (fault.kind == recording::RunFault::Kind::Displaced) {
-            displaced.emplace(name, fault.why);
+        if (fault.kind != recording::RunFault::Kind::Damaged) {
+            faults.emplace(name, fault);
         } else if (!builds_.holds(name)) { // otherwise the build thread may be reading the world
             stop_damaged(name, fault.why);
         }
     }
-    const auto before = std::exchange(displaced_, std::move(displaced));
-    if (before.empty() && displaced_.empty()) {
+    const auto before = std::exchange(faults_, std::move(faults));
+    if (before.empty() && faults_.empty()) {
         return;
     }
     for (const auto& entry : laboratory_.entries()) {
-        const auto found = displaced_.find(entry->name);
-        if (found == displaced_.end() && !before.contains(entry->name)) {
+        const auto found = faults_.find(entry->name);
+        if (found == faults_.end() && !before.contains(entry->name)) {
             continue;
         }
-        const simulation::Storage now =
-            found == displaced_.end() ? *laboratory_.storage()
-                                      : simulation::Storage{simulation::StorageState::Stalled, found->second.message};
+        const simulation::Storage now = found == faults_.end() ? *laboratory_.storage() : storage_of(found->second);
         entry->storage = now;
-        const auto was_displaced = before.find(entry->name);
-        if ((was_displaced == before.end()) != (found == displaced_.end())) {
+        const bool was_faulty = before.contains(entry->name);
+        if (was_faulty != (found != faults_.end())) {
             outputs_.storage_of_world(entry->name, now);
         }
     }

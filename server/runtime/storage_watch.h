@@ -1,9 +1,9 @@
 // Storage watch: whether the runs of the live worlds can be written, and what becomes of the worlds if not.
 //
+//   Full run file          the world, which belongs to a class, waits until it is reset or deleted.
 //   Slow or failing disk   all worlds wait once the write queue is full. Commands are refused while writing fails.
 //   Damaged run file       the world becomes a damaged world. The storage thread has refused its unrecorded commands.
-//   Displaced run file     the world waits, and its commands are refused, until its file is back. A longer wait would
-//   cost
+//   Displaced run file     the world waits, and its commands are refused, until its file is back. A longer wait would cost
 //                          the other worlds room in the write queue, so it does not run on as it does while the whole
 //                          disk fails.
 //
@@ -38,7 +38,7 @@ class StorageWatch {
     std::optional<Clock::time_point> due() const;
 
     /// Whether a world must wait.
-    bool holds(const simulation::Entry& world) const { return worlds_wait_ || displaced_.contains(world.name); }
+    bool holds(const simulation::Entry& world) const { return worlds_wait_ || faults_.contains(world.name); }
     /// Returns why a command to the world cannot be recorded now, although the disk works; nullopt if it can.
     std::optional<base::Refusal> refusal_of(const std::string& world) const;
 
@@ -53,7 +53,7 @@ class StorageWatch {
     const LoopOutputs& outputs_;
     bool worlds_wait_ = false;
     std::optional<Clock::time_point> waiting_since_; // time at which worlds began to wait for a working disk
-    std::map<std::string, base::Refusal> displaced_; // by name of the world
+    std::map<std::string, recording::RunFault> faults_; // by name of the world; none is of a damaged file
 };
 
 } // namespace evod::runtime
