@@ -50,8 +50,8 @@ std::optional<LessonReport> check_lesson(
     const std::function<bool()>& stopped = [] { return false; });
 
 /// Whether a guess that passed in `passed` of `tried` cases is refused: from 20 seeds on, an expected answer must pass
-/// nine of ten, and another one at most six of ten. With fewer seeds, it is refused only if the chance of so bad a result
-/// would be below 5 % at these shares.
+/// nine of ten, and another one at most six of ten. With fewer seeds, it is refused only if the chance of so bad a
+/// result would be below 5 % at these shares.
 bool is_refused(bool is_expected, std::uint32_t passed, std::uint32_t tried, std::uint32_t seeds);
 
 } // namespace evod::experiments

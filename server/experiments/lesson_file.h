@@ -1,4 +1,5 @@
-// Lesson files: texts, predictions, what to run, observations and checks, as JSON. docs/LESSONS.md documents the format.
+// Lesson files: texts, predictions, what to run, observations and checks, as JSON. docs/LESSONS.md documents the
+// format.
 //
 // Threads      none.
 #pragma once

@@ -230,9 +230,7 @@ std::string handout_of(const Lesson& lesson, const std::string& language) {
         }
         if (step.run > 0) {
             html += "<p>☐ " + std::string{words.run} + ": " + std::to_string(step.run) + " " +
-                    std::string{words.generations} +
-                    "</p>
-                    ";
+                    std::string{words.generations} + "</p>\n";
         }
         if (step.check) {
             html += "<p>" + std::string{words.observed} + ": " + line + "</p>\n";

@@ -315,6 +315,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/commands", "certificate"): "system/access_test; its logic is access/certificate",
     ("server/commands", "check_config"): "system/config_test; its logic is command_line/options_file",
     ("server/commands", "fork verify"): "system/run_file_test; their logic is replay/run_file_fork and replay/verify",
+    ("server/commands", "lesson"): "system/lesson_test; its logic is experiments/lesson_check and lesson_texts",
     ("server/commands", "json_lines"): "unit/commands/run_test, sweep_test and compare_test: options of these commands",
     ("server/commands", "shared_worlds"): "system/mpi_test",
     ("server/commands", "data"): "system/disk_space_test; its logic is run_file/",
