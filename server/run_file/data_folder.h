@@ -4,6 +4,7 @@
 //   NAME.RUNID.evod   a run that has ended
 //   NAME.evod-next    a run that is being created; it becomes NAME.evod
 //   NAME.damaged-N.evod   the file of a damaged world that was deleted; no server reads it
+//   NAME.evod.copy-…  a copy for an export (replay/exported_file.h); open() deletes those that a killed server left
 //
 // Owner        one server. It locks the file `lock`, so that a second server for the same folder is refused.
 #pragma once
@@ -12,6 +13,7 @@
 #include "server/simulation/commands.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evod::run_file {
@@ -25,6 +27,9 @@ class DataFolder {
     DataFolder(DataFolder&& other) noexcept;
     DataFolder& operator=(DataFolder&&) = delete;
     ~DataFolder();
+
+    /// In the names of copies, after that of the copied file.
+    static constexpr std::string_view copy_mark = ".copy-";
 
     const std::string& path() const { return path_; }
     std::string file_of(const std::string& world) const;
