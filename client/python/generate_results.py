@@ -20,7 +20,10 @@ ROOTS = ("WorldInfo", "DamagedWorld", "Statistics", "Motion", "OrganismInfo", "P
 STATES = ("Detail",)  # further enums
 RENAMED = {"Replay": "ReplayRange", "Placed": "EntityIds"}  # evod.Replay is another class
 SAME = {"Removed": "Placed"}  # a message → the message whose dataclass it shares
-COMMENTS = {"Placed": "The items and organisms that `World.place` has placed or `World.remove` has removed."}
+COMMENTS = {"Placed": "The items and organisms that `World.place` has placed or `World.remove` has removed.",
+            "ClassMember": "A member of a class.",
+            "PersonalCode": "A code with which one member of a class joins on any device: `evod.join`.",
+            "Membership": "What a member knows of the class: `Lab.membership`."}
 LEFT_OUT = {"Placed.by", "Descendant.more_from_second", "ClassInfo.template"}
 # Field → its type, and a comment if the one of the protocol is not true here.
 FIELDS = {

@@ -107,7 +107,7 @@ def ranges_message(ranges: Mapping[str, tuple[float, float]] | None) -> c.QuotaR
     return message
 
 
-def update(name: str, **fields: Any) -> Plan[ClassInfo]:
+def update(name: str, /, **fields: Any) -> Plan[ClassInfo]:
     """Changes a class; returns its new state."""
     info: ClassInfo = result((yield from request("update_class", **{"class": name}, **fields)).class_info)
     return info
@@ -128,7 +128,7 @@ def member_of(info: ClassInfo, member: int | str | ClassMember) -> ClassMember:
     raise NotFound(f"the class '{info.name}' has no member {wanted!r}")
 
 
-def change_member(name: str, member: int | str | ClassMember, **fields: Any) -> Plan[tuple[PersonalCode, ...]]:
+def change_member(name: str, member: int | str | ClassMember, /, **fields: Any) -> Plan[tuple[PersonalCode, ...]]:
     """Changes one member."""
     number = member_of((yield from class_info(name)), member).number
     response = yield from request("change_member", **{"class": name}, number=number, **fields)
