@@ -23,7 +23,7 @@ namespace {
 
 struct ClassOptions {
     std::string name, page;
-    bool qr = false; // draw the QR code even if standard output is no terminal
+    bool qr = false; // draw the QR code even if standard output is not a terminal
 };
 
 struct CreateClassOptions : ClassOptions {
@@ -239,8 +239,9 @@ void open_class(const Common& common, const ClassOptions& options, bool open, bo
     wanted.set_open(open);
     wanted.set_new_code(new_code);
     const v1::ClassInfo info = update(caller, wanted);
-    print(common, info,
-          [&] { return open ? invitation(caller, options, info) : "nobody can join " + options.name + " any more\n"; });
+    print(common, info, [&] {
+        return open ? invitation(caller, options, info) : "no student can join " + options.name + " any more\n";
+    });
     draw_code(common, caller, options, info);
 }
 
@@ -318,9 +319,9 @@ void print_sheet(const Common& common, const SheetOptions& options) {
         }
     }
     if (wanted.empty()) {
-        throw Stop{ExitCode::Refused,
-                   "every member of " + options.name +
-                       " has joined already: name those who need a new code; it ends their sessions"};
+        throw Stop{ExitCode::Refused, "every member of " + options.name +
+                                          " has joined already: name those who need a new code, "
+                                          "which ends their sessions"};
     }
     v1::PersonalCodes codes;
     for (const v1::ClassMember* member : wanted) {
@@ -351,7 +352,7 @@ void add_link_options(command_line::Command& command, ClassOptions& options, boo
     command.add_option("--page", &options.page,
                        "Address of the page, for example of a proxy; default: the one that the server reports");
     if (has_qr) {
-        command.add_flag("--qr", &options.qr, "Draw the QR code even if standard output is no terminal");
+        command.add_flag("--qr", &options.qr, "Draw the QR code even if standard output is not a terminal");
     }
 }
 
@@ -423,7 +424,7 @@ void add_state_commands(command_line::Command& classes, const Common& common) {
         void (*act)(const Common&, const std::string&);
     };
     static constexpr Change changes[] = {
-        {"lock", "End the code, so that nobody can join; members stay",
+        {"lock", "End the code, so that no student can join; members stay",
          [](const Common& common, const std::string& name) {
              open_class(common, {.name = name, .page = {}}, false, false);
          }},

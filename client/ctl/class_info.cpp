@@ -57,7 +57,7 @@ std::string code_text(const v1::ClassInfo& info) {
 
 std::string class_text(const v1::ClassInfo& info) {
     std::string text = "class " + info.name() + " of " + info.teacher() + (info.frozen() ? ", frozen" : "") +
-                       "\ncode: " + (info.code().empty() ? "none, nobody can join" : code_text(info)) + "\n";
+                       "\ncode: " + (info.code().empty() ? "none, so no student can join" : code_text(info)) + "\n";
     if (!info.lesson().empty()) {
         text += "lesson: " + info.lesson() + "\n";
     }

@@ -9,7 +9,7 @@
 
 namespace evod::ctl {
 
-/// Adds the text of an experiment file to a request. The server parses the text. Throws Stop if the file cannot be read.
+/// Adds the text of an experiment file to a request. The server parses it. Throws Stop if the file cannot be read.
 void add_experiment(const std::string& path, v1::CreateWorld& command);
 
 /// Adds a population file, for the experiment that the request contains already. Throws Stop if the file is invalid.

@@ -20,6 +20,6 @@ from evod.aio.lab import Lab, Replay, World
 from evod.aio.streams import Events, Run, Snapshots
 
 __all__ = [
-    "Classroom", "Evaluation", "Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare", "connect", "join", "local",
-           "run", "run_table", "sweep",
+    "Classroom", "Evaluation", "Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare",
+    "connect", "join", "local", "run", "run_table", "sweep",
 ]  # fmt: skip

@@ -83,7 +83,8 @@ class Classrooms:
         --------
         >>> import evod.aio
         >>> async with evod.aio.local() as lab:
-        ...     bio2 = await lab.create_class("bio2", {"population_size": 20}, seed=1, ranges={"population_size": (1, 50)})
+        ...     bio2 = await lab.create_class("bio2", {"population_size": 20}, seed=1,
+        ...                                   ranges={"population_size": (1, 50)})
         ...     codes = await bio2.add_members(["Ada", "Bo"])
         ...     members = await bio2.members()
         >>> [member.world for member in members], len(codes[0].code)
