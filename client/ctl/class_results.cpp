@@ -49,10 +49,19 @@ Results results_of(const v1::History& history) {
     return results;
 }
 
-v1::History history_of(Caller& caller, const std::string& world) {
+/// Returns the history of the world with which a member began. Empty if the world does not exist, because the member has
+/// not joined yet or has deleted it.
+v1::History history_of(Caller& caller, const v1::ClassMember& member) {
     v1::GetHistory wanted;
-    wanted.set_world(world);
-    return caller.history(std::move(wanted));
+    wanted.set_world(member.world());
+    try {
+        return caller.history(std::move(wanted));
+    } catch (const Stop& stop) {
+        if (stop.status.code() != v1::CODE_NOT_FOUND) {
+            throw;
+        }
+        return {};
+    }
 }
 
 std::string csv_line(const std::vector<std::string>& cells) {
@@ -131,7 +140,7 @@ class Collection {
         std::string rows = csv_line(columns);
         for (const v1::ClassMember& member : info_.members()) {
             Results results;
-            attempt(member.world(), [&] { results = results_of(history_of(caller_, member.world())); });
+            attempt(member.world(), [&] { results = results_of(history_of(caller_, member)); });
             std::vector<std::string> row = summary_of(member, results);
             row.insert(row.end(),
                        {member.joined() ? "true" : "false", member.removed() ? "true" : "false",
@@ -214,7 +223,7 @@ void compare_class(const Common& common, const CompareOptions& options) {
     }
     csv = csv_line(options.summary ? summary_columns : columns);
     for (const v1::ClassMember& member : info.members()) {
-        v1::History history = history_of(caller, member.world());
+        v1::History history = history_of(caller, member);
         const std::vector<std::string> summary = summary_of(member, results_of(history));
         table.add(summary);
         if (options.summary) {

@@ -162,18 +162,23 @@ def compare(name: str) -> Plan[list[dict[str, Any]]]:
     """Returns one row for each member, generation and island."""
     rows = []
     for member in (yield from class_info(name)).members:
-        for row in (yield from _history(member.world)):
+        for row in (yield from _history(member)):
             statistics = {field.name: getattr(row, field.name) for field in row.DESCRIPTOR.fields
                           if field.message_type is None}
             rows.append({"number": member.number, "name": member.name, "world": member.world, **statistics})
     return rows
 
 
-def _history(world: str) -> Plan[list[world_pb2.GenerationStatistics]]:
+def _history(member: ClassMember) -> Plan[list[world_pb2.GenerationStatistics]]:
+    """Returns the statistics of the world with which a member began; none if the member has not joined yet, or has
+    deleted the world."""
     rows: list[world_pb2.GenerationStatistics] = []
     first = None
     while True:
-        answer = (yield from request("get_history", world=world, first_generation=first)).history
+        try:
+            answer = (yield from request("get_history", world=member.world, first_generation=first)).history
+        except NotFound:
+            return rows
         rows += answer.generations
         if not answer.HasField("next_generation"):
             return rows
@@ -209,9 +214,9 @@ def collect(name: str) -> Plan[Collected]:
     for member in info.members:
         own = [world for world in worlds if world.owner == member.user]
         try:
-            results = summary_of((yield from _history(member.world)))
-        except (NotFound, FailedPrecondition):  # the member has deleted the world, or it is damaged
-            results = (0, "", "", "")
+            results = summary_of((yield from _history(member)))
+        except FailedPrecondition:  # the world is damaged
+            results = summary_of(())
         written = sum(row[0] == member.number for row in all_notes)
         students.append((member.number, member.name, member.world, *results, _flag(member.joined),
                          _flag(member.removed), len(own), written))
