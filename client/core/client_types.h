@@ -84,6 +84,12 @@ inline const std::string& to_text(const evod::v1::Storage& storage) {
 struct Options {
     Endpoint server{};
     std::string token = ""; // empty: none
+    // Connects as a member of a class, instead of with a token; later sessions use the token that the server has sent.
+    struct Join {
+        std::string code;      // of the class, or a personal code
+        std::string name = ""; // of a new member; empty: the server makes one up
+    };
+    std::optional<Join> join = {};
     struct Tls {
         std::string ca = "";          // PEM file with trusted certificates; empty: those that the system trusts
         std::string certificate = ""; // PEM file with the client's certificate, for servers that require one

@@ -46,7 +46,11 @@ std::optional<evod::v1::Event> EventQueue::pop() {
 }
 
 ProtocolState::ProtocolState(Options options, std::string client_key, std::uint32_t jitter, TimePoint now)
-    : options_{std::move(options)}, requests_{std::move(client_key)}, backoff_{options_.backoff_min}, jitter_{jitter} {
+    : options_{std::move(options)}
+    , token_{options_.token}
+    , requests_{std::move(client_key)}
+    , backoff_{options_.backoff_min}
+    , jitter_{jitter} {
     begin_session(now);
 }
 
@@ -56,7 +60,12 @@ void ProtocolState::opened(TimePoint now) {
     hello.set_protocol_version(codec::protocol_version);
     hello.set_client_name(options_.client_name);
     hello.set_client_version(options_.client_version);
-    hello.set_token(options_.token);
+    if (token_.empty() && options_.join) {
+        hello.mutable_join()->set_code(options_.join->code);
+        hello.mutable_join()->set_name(options_.join->name);
+    } else {
+        hello.set_token(token_);
+    }
     hello.set_frame_bytes_max(*codec::client_limits.control_bytes_max);
     output_.bytes = codec::encode_frame(codec::Channel::Control, message);
     session_.opened = true;
@@ -210,6 +219,9 @@ void ProtocolState::take_first_message(const evod::v1::ServerMessage& message, T
         status_.reason.clear();
         status_.refusal.reset();
         status_.welcome = message.welcome();
+        if (const std::string& token = message.welcome().membership().token(); !token.empty()) {
+            token_ = token;
+        }
         ++status_.connected_count;
         deadline_ = TimePoint::max();
         lost_since_.reset();

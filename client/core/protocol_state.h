@@ -91,6 +91,7 @@ class ProtocolState {
     TimePoint give_up_at() const;
 
     const Options options_;
+    std::string token_; // of Options, or of the server's answer to a join
     ConnectionStatus status_;
     SessionState session_;
     Output output_;

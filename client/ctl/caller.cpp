@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
+#include <cmath>
 #include <csignal>
 #include <iostream>
 #include <termios.h>
@@ -153,6 +155,38 @@ v1::Storage Caller::storage() {
     return welcome_.storage(); // there is no world, so none can wait for the disk
 }
 
+v1::History Caller::history(v1::GetHistory wanted) {
+    v1::History all;
+    for (bool more = true; more;) {
+        v1::Request request;
+        *request.mutable_get_history() = wanted;
+        v1::Response response = call(std::move(request));
+        auto& history = *response.mutable_history();
+        more = history.has_next_generation();
+        if (more && wanted.has_first_generation() && history.next_generation() <= wanted.first_generation()) {
+            throw Stop{ExitCode::Refused, "the server's history does not continue after generation " +
+                                              std::to_string(wanted.first_generation())};
+        }
+        wanted.set_first_generation(history.next_generation());
+        all.mutable_generations()->MergeFrom(history.generations());
+        all.mutable_changes()->MergeFrom(history.changes());
+    }
+    return all;
+}
+
+void Caller::export_run(v1::ExportRun wanted, const std::function<bool(const v1::ExportPart&)>& write) {
+    // It is long because the server may have to simulate purged generations again.
+    constexpr std::chrono::minutes part_timeout{60};
+    v1::Request request;
+    *request.mutable_export_run() = std::move(wanted);
+    v1::ExportPart part = call(std::move(request), part_timeout).export_part();
+    while (write(part) && !part.last()) {
+        v1::Request next;
+        next.mutable_continue_export()->set_export_id(part.export_id());
+        part = call(std::move(next), part_timeout).export_part();
+    }
+}
+
 void Caller::require_subscribed(core::SubscriptionHandle subscription) const {
     const auto answer = connection_->subscription_answer(subscription);
     if (answer && !core::accepted(*answer)) {
@@ -169,6 +203,9 @@ void Caller::need(const std::string& feature, const std::string& what) const {
 }
 
 std::string state_of(const v1::WorldInfo& world) {
+    if (world.frozen() && world.state() != v1::RUN_STATE_TERMINATED) {
+        return "frozen";
+    }
     switch (world.state()) {
     case v1::RUN_STATE_WAITING:
         return "waiting";
@@ -222,6 +259,31 @@ std::string speed_of(const v1::WorldInfo& world) {
     const v1::Speed& speed = world.speed();
     return (speed.has_real_time_factor() ? speed_text(speed.real_time_factor()) : "max") +
            (world.slowed() ? " (slower)" : "");
+}
+
+v1::Speed parse_speed(std::string_view word) {
+    v1::Speed speed;
+    if (word == "max") {
+        speed.set_max(true);
+        return speed;
+    }
+    std::string_view number = word; // as speed_text() prints it: "2×", "1/8×"
+    for (const std::string_view sign : {"x", "×"}) {
+        if (number.ends_with(sign)) {
+            number.remove_suffix(sign.size());
+        }
+    }
+    const bool is_fraction = number.starts_with("1/");
+    number.remove_prefix(is_fraction ? 2 : 0);
+    double factor = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), factor);
+    if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(factor)) {
+        throw Stop{ExitCode::Usage, "SPEED: got " + std::string{word} +
+                                        ", allowed max, or 0.001 to 10000, such as 2 for twice real time"};
+    }
+    factor = is_fraction ? 1 / factor : factor; // the server refuses 1/0
+    speed.set_real_time_factor(factor);
+    return speed;
 }
 
 std::string sentence(const v1::WorldInfo& world) {

@@ -12,6 +12,7 @@
 #include <google/protobuf/message.h>
 
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -55,6 +56,10 @@ class Caller {
     v1::WorldInfo world(const std::string& name);
     /// Returns the current state of the server's storage.
     v1::Storage storage();
+    /// Returns the whole history that is wanted, with as many requests as it needs.
+    v1::History history(v1::GetHistory wanted);
+    /// Exports a table, and calls `write` with each part. Ends after a part for which `write` returns false.
+    void export_run(v1::ExportRun wanted, const std::function<bool(const v1::ExportPart&)>& write);
 
     /// Throws Stop if the server does not have a feature. An older server would ignore fields that it does not know.
     ///
@@ -96,6 +101,8 @@ std::string colored_state_of(const v1::WorldInfo& world);
 std::string durability_warning(const v1::Welcome& welcome);
 /// Returns the requested speed, and whether the world is slower than requested: "2×", "max", "100× (slower)".
 std::string speed_of(const v1::WorldInfo& world);
+/// Parses a speed as users type it, and as speed_text() prints it: "max", "2", "2×", "1/8×". Throws Stop.
+v1::Speed parse_speed(std::string_view word);
 /// Describes a world in a sentence: "default: running at 1×, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);
 
@@ -121,6 +128,8 @@ void add_rate_command(command_line::Command& app, const Common& common);
 void add_run_commands(command_line::Command& app, const Common& common);
 void add_breeding_command(command_line::Command& app, const Common& common);
 void add_export_command(command_line::Command& app, const Common& common);
+void add_class_commands(command_line::Command& app, const Common& common);
+void add_note_command(command_line::Command& app, const Common& common);
 void add_watch_commands(command_line::Command& app, const Common& common);
 void add_top_command(command_line::Command& app, const Common& common);
 

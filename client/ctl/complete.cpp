@@ -76,16 +76,35 @@ std::vector<Candidate> worlds(const Common& common) {
     return all;
 }
 
+std::vector<Candidate> classes(const Common& common) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_list_classes();
+    const v1::Response response = caller.call(std::move(request));
+    std::vector<Candidate> all;
+    for (const auto& info : response.classes().classes()) {
+        all.push_back({info.name(), std::to_string(info.members_size()) + " members"});
+    }
+    return all;
+}
+
 } // namespace
 
 std::vector<Candidate> values_of_server(const IncompleteWord& incomplete) {
     const std::string &command = incomplete.command, &option = incomplete.option, &word = incomplete.word;
+    const bool of_class = command.starts_with("class ") && command != "class create" && command != "class list";
     try {
         const Common common = common_of(incomplete.before);
         if (option == "--world" || (option.empty() && (command == "delete" || command == "fork"))) {
             return worlds(common);
         }
-        const bool assigns = command == "set" || option == "--set";
+        if (of_class && option.empty()) {
+            const bool has_name = std::ranges::find(incomplete.before, command.substr(6)) + 1 < incomplete.before.end();
+            if (!has_name) {
+                return classes(common);
+            }
+        }
+        const bool assigns = command == "set" || command == "class set" || option == "--set";
         if (option == "--set" || (option.empty() && (assigns || command == "get" || command == "params"))) {
             return parameters(common, word, assigns);
         }

@@ -1,4 +1,4 @@
-// evoctl export: writes a table of a world's run file as CSV or JSON lines.
+// evoctl export: writes a table of a world's run file as CSV or JSON lines, or a copy of the file.
 #include "client/ctl/caller.h"
 #include "proto/command_line/command.h"
 #include "proto/files/unfinished_file.h"
@@ -14,14 +14,13 @@ namespace evod::ctl {
 
 namespace {
 
-/// Timeout for one part of the table. It is long because the server may have to simulate purged generations again.
-constexpr std::chrono::minutes part_timeout{60};
-
 const std::map<std::string, v1::RunTable> tables{{"generations", v1::RUN_TABLE_GENERATIONS},
                                                  {"organisms", v1::RUN_TABLE_ORGANISMS},
                                                  {"lineage", v1::RUN_TABLE_LINEAGE},
                                                  {"population", v1::RUN_TABLE_POPULATION},
-                                                 {"events", v1::RUN_TABLE_EVENTS}};
+                                                 {"events", v1::RUN_TABLE_EVENTS},
+                                                 {"notes", v1::RUN_TABLE_NOTES},
+                                                 {"file", v1::RUN_TABLE_FILE}};
 const std::map<std::string, v1::TextFormat> formats{{"csv", v1::TEXT_FORMAT_CSV},
                                                     {"jsonl", v1::TEXT_FORMAT_JSON_LINES}};
 
@@ -52,12 +51,17 @@ std::optional<v1::OrganismName> organism_named(const std::string& text) {
     return name;
 }
 
-v1::Request request_of(const Common& common, const ExportOptions& options) {
-    v1::Request request;
-    auto& command = *request.mutable_export_run();
+v1::ExportRun request_of(const Common& common, const ExportOptions& options) {
+    v1::ExportRun command;
     command.set_world(common.world);
     command.set_table(tables.at(options.what));
-    command.set_format(formats.at(options.format));
+    if (command.table() != v1::RUN_TABLE_FILE) {
+        command.set_format(formats.at(options.format));
+    } else if (options.format != "csv") {
+        throw Stop{ExitCode::Usage, "--format: not with --what file"};
+    } else if (options.output.empty() && on_terminal()) {
+        throw Stop{ExitCode::Usage, "--output: required with --what file on a terminal"};
+    }
     if (options.generation) {
         if (command.table() != v1::RUN_TABLE_POPULATION) {
             throw Stop{ExitCode::Usage, "--generation: only with --what population"};
@@ -74,33 +78,33 @@ v1::Request request_of(const Common& common, const ExportOptions& options) {
         }
         *command.mutable_of() = *organism;
     }
-    return request;
+    return command;
 }
 
 void export_run(const Common& common, const ExportOptions& options) {
-    v1::Request request = request_of(common, options);
+    const v1::ExportRun wanted = request_of(common, options);
     Caller caller{common};
-    v1::ExportPart part = caller.call(std::move(request), part_timeout).export_part();
     // The file is opened when the first part arrives, so that an existing file stays unchanged if the server refuses.
     std::optional<files::UnfinishedFile> file;
-    if (!options.output.empty()) {
-        file.emplace(options.output);
-        if (!file->stream()) {
-            throw Stop{ExitCode::Usage, "--output: cannot write " + options.output + ": " + std::strerror(errno)};
+    bool is_first = true;
+    caller.export_run(wanted, [&](const v1::ExportPart& part) {
+        if (is_first && !options.output.empty()) {
+            file.emplace(options.output);
+            if (!file->stream()) {
+                throw Stop{ExitCode::Usage, "--output: cannot write " + options.output + ": " + std::strerror(errno)};
+            }
         }
-    }
-    std::ostream& out = file ? file->stream() : std::cout;
-    if (part.generations_left_out() > 0) {
-        std::cerr << "evoctl: " << part.generations_left_out()
-                  << " generations are missing: they were purged, and the server cannot simulate them again because "
-                     "its version of the model differs\n";
-    }
-    while (out.write(part.text().data(), static_cast<std::streamsize>(part.text().size())) && !part.last()) {
-        v1::Request next;
-        next.mutable_continue_export()->set_export_id(part.export_id());
-        part = caller.call(std::move(next), part_timeout).export_part();
-    }
-    if (!(file ? file->finish() : static_cast<bool>(out.flush()))) {
+        if (is_first && part.generations_left_out() > 0) {
+            std::cerr
+                << "evoctl: " << part.generations_left_out()
+                << " generations are missing: they were purged, and the server cannot simulate them again because "
+                   "its version of the model differs\n";
+        }
+        is_first = false;
+        std::ostream& out = file ? file->stream() : std::cout;
+        return out.write(part.text().data(), static_cast<std::streamsize>(part.text().size())).good();
+    });
+    if (!(file ? file->finish() : static_cast<bool>(std::cout.flush()))) {
         throw Stop{ExitCode::Refused, options.output.empty()
                                           ? "standard output cannot be written"
                                           : "--output: cannot write " + options.output + ", the disk may be full"};
@@ -125,7 +129,8 @@ void add_export_command(command_line::Command& app, const Common& common) {
         .add_option(
             "--what", &options.what,
             "generations: statistics; organisms: parents, genes and fate of each; lineage: parents and children; "
-            "population: the genes of one generation, for `create --population`; events: the journaled commands")
+            "population: the genes of one generation, for `create --population`; events: the journaled commands; "
+            "notes: what users have noted; file: a copy of the run file")
         .required()
         .choices(names_of(tables));
     command.add_option("--of", &options.of,
@@ -140,7 +145,8 @@ void add_export_command(command_line::Command& app, const Common& common) {
     command.add_option("--output", &options.output, "Output file; default: standard output");
     command.footer(
         "Examples:\n  evoctl export --what organisms --output organisms.csv\n"
-        "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n\n"
+        "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n"
+        "  evoctl export --what file --output default.evod && evod verify default.evod\n\n"
         "To write a folder with all tables, run on the server's machine: evod export RUN.evod --bundle FOLDER");
     command.action([&] { export_run(common, options); });
 }

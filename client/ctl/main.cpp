@@ -80,6 +80,8 @@ int main(int argc, char** argv) {
     add_link_command(app, common);
     add_breeding_command(app, common);
     add_export_command(app, common);
+    add_class_commands(app, common);
+    add_note_command(app, common);
     add_watch_commands(app, common);
     add_top_command(app, common);
     add_help_commands(app);

@@ -36,15 +36,21 @@ void status(const Common& common) {
         worlds = std::move(only);
     }
     print(common, worlds, [&] {
-        Table table{{{"WORLD"},
-                     {"STATE"},
-                     {"SPEED", Align::Right},
-                     {"GENERATION", Align::Right},
-                     {"TICK", Align::Right},
-                     {"SIMULATED", Align::Right},
-                     {"TICKS/S", Align::Right},
-                     {"ISLANDS", Align::Right},
-                     {"SEED", Align::Right}}};
+        std::vector<Table::Column> columns{{"WORLD"},
+                                           {"STATE"},
+                                           {"SPEED", Align::Right},
+                                           {"GENERATION", Align::Right},
+                                           {"TICK", Align::Right},
+                                           {"SIMULATED", Align::Right},
+                                           {"TICKS/S", Align::Right},
+                                           {"ISLANDS", Align::Right},
+                                           {"SEED", Align::Right}};
+        const bool owned = std::ranges::any_of(
+            worlds.worlds(), [](const v1::WorldInfo& world) { return !(world.owner() + world.class_()).empty(); });
+        if (owned) {
+            columns.insert(columns.end(), {{"CLASS"}, {"OWNER"}});
+        }
+        Table table{columns};
         std::map<std::string, std::vector<std::string>> rows; // by name
         std::string reasons;
         for (const auto& world : worlds.worlds()) {
@@ -57,9 +63,13 @@ void status(const Common& common) {
                                   fixed(world.ticks_per_s(), 0),
                                   std::to_string(world.island_count()),
                                   std::to_string(world.seed())};
+            if (owned) {
+                rows[world.name()].insert(rows[world.name()].end(), {world.class_(), world.owner()});
+            }
         }
         for (const auto& world : worlds.damaged()) {
-            rows[world.name()] = {world.name(), in_color("damaged", Color::Red), "-", "-", "-", "-", "-", "-", "-"};
+            rows[world.name()] = {world.name(), in_color("damaged", Color::Red)};
+            rows[world.name()].resize(columns.size(), "-");
             reasons += in_color(world.name() + " does not run: " + world.reason(), Color::Yellow) + "\n";
         }
         for (const auto& [name, row] : rows) {
@@ -240,33 +250,18 @@ struct HistoryOptions {
 };
 
 v1::History history_of(Caller& caller, const Common& common, const HistoryOptions& options) {
-    v1::History all;
-    std::optional<std::uint64_t> next = options.from;
-    do {
-        v1::Request request;
-        auto& page = *request.mutable_get_history();
-        page.set_world(common.world);
-        if (next) {
-            page.set_first_generation(*next);
-        }
-        if (options.to) {
-            page.set_last_generation(*options.to);
-        }
-        if (options.island) {
-            page.set_island(*options.island);
-        }
-        v1::Response response = caller.call(std::move(request));
-        auto& history = *response.mutable_history();
-        const std::optional<std::uint64_t> before = next;
-        next = history.has_next_generation() ? std::optional{history.next_generation()} : std::nullopt;
-        if (next && before && *next <= *before) {
-            throw Stop{ExitCode::Refused,
-                       "the server's history does not continue after generation " + std::to_string(*before)};
-        }
-        all.mutable_generations()->MergeFrom(history.generations());
-        all.mutable_changes()->MergeFrom(history.changes());
-    } while (next);
-    return all;
+    v1::GetHistory wanted;
+    wanted.set_world(common.world);
+    if (options.from) {
+        wanted.set_first_generation(*options.from);
+    }
+    if (options.to) {
+        wanted.set_last_generation(*options.to);
+    }
+    if (options.island) {
+        wanted.set_island(*options.island);
+    }
+    return caller.history(std::move(wanted));
 }
 
 std::string csv_of(const v1::History& history, const v1::WorldInfo& world) {

@@ -1,13 +1,11 @@
 // Commands that control worlds: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
-#include "client/ctl/input_file.h"
 #include "client/ctl/pace.h"
 #include "client/ctl/registry.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/text.h"
-#include "proto/codec/framing.h"
+#include "client/ctl/world_template.h"
 #include "proto/command_line/command.h"
-#include "proto/files/input_file.h"
 
 #include <unistd.h>
 
@@ -36,29 +34,6 @@ struct CreateOptions {
     std::vector<std::string> words;
     std::optional<std::uint64_t> seed;
 };
-
-/// Adds the text of an experiment file to a request. The server parses the text.
-void add_experiment(const std::string& path, v1::CreateWorld& command) {
-    command.set_experiment_json(text_in(path, "an experiment file", files::experiment_bytes_max));
-    if (command.experiment_json().empty()) {
-        throw Stop{ExitCode::Usage, "the experiment file " + path + " is empty"};
-    }
-}
-
-void add_population(const std::string& path, v1::CreateWorld& command) {
-    const codec::Population population = population_in(path, choices_in(command.experiment_json()));
-    for (const std::vector<float>& genes : population.islands) {
-        command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
-    }
-    command.mutable_population_gene_names()->Assign(population.gene_names.begin(), population.gene_names.end());
-    // This many bytes are reserved for the other fields of the request, which need much less.
-    constexpr std::size_t rest_bytes_max = 32 << 10;
-    if (command.ByteSizeLong() + rest_bytes_max > *codec::server_limits.control_bytes_max) {
-        throw Stop{ExitCode::Usage, "the population file " + path +
-                                        " is too large for a request (about 43,000 organisms): start such a world with "
-                                        "evod --population"};
-    }
-}
 
 /// The world that a command names by a value, by --world, or by both if they agree. A value replaces EVOD_WORLD.
 ///
@@ -430,31 +405,6 @@ void resume(const Common& common) {
     v1::Request request;
     request.mutable_resume()->set_world(common.world);
     print_world(common, caller.call(std::move(request)));
-}
-
-v1::Speed parse_speed(std::string_view word) {
-    v1::Speed speed;
-    if (word == "max") {
-        speed.set_max(true);
-        return speed;
-    }
-    std::string_view number = word; // as speed_text() prints it: "2×", "1/8×"
-    for (const std::string_view sign : {"x", "×"}) {
-        if (number.ends_with(sign)) {
-            number.remove_suffix(sign.size());
-        }
-    }
-    const bool is_fraction = number.starts_with("1/");
-    number.remove_prefix(is_fraction ? 2 : 0);
-    double factor = 0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), factor);
-    if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(factor)) {
-        throw Stop{ExitCode::Usage, "SPEED: got " + std::string{word} +
-                                        ", allowed max, or 0.001 to 10000, such as 2 for twice real time"};
-    }
-    factor = is_fraction ? 1 / factor : factor; // the server refuses 1/0
-    speed.set_real_time_factor(factor);
-    return speed;
 }
 
 void set_speed(const Common& common, const std::string& word) {

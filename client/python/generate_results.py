@@ -6,6 +6,7 @@ DESCRIPTORS is what protoc writes with --include_imports --include_source_info -
 frozen dataclass, an enum becomes an enum. A field is None if the message does not contain it, or if its enum has the
 value 0.
 """
+import keyword
 import pathlib
 import re
 import sys
@@ -14,12 +15,16 @@ import textwrap
 from google.protobuf import descriptor_pb2
 
 # with all that they contain
-ROOTS = ("WorldInfo", "DamagedWorld", "Statistics", "Motion", "OrganismInfo", "Placed", "Breeding")
+ROOTS = ("WorldInfo", "DamagedWorld", "Statistics", "Motion", "OrganismInfo", "Placed", "Breeding", "ClassInfo",
+         "PersonalCode", "Membership")
 STATES = ("Detail",)  # further enums
 RENAMED = {"Replay": "ReplayRange", "Placed": "EntityIds"}  # evod.Replay is another class
 SAME = {"Removed": "Placed"}  # a message → the message whose dataclass it shares
-COMMENTS = {"Placed": "The items and organisms that `World.place` has placed or `World.remove` has removed."}
-LEFT_OUT = {"Placed.by", "Descendant.more_from_second"}
+COMMENTS = {"Placed": "The items and organisms that `World.place` has placed or `World.remove` has removed.",
+            "ClassMember": "A member of a class.",
+            "PersonalCode": "A code with which one member of a class joins on any device: `evod.join`.",
+            "Membership": "What a member knows of the class: `Lab.membership`."}
+LEFT_OUT = {"Placed.by", "Descendant.more_from_second", "ClassInfo.template"}
 # Field → its type, and a comment if the one of the protocol is not true here.
 FIELDS = {
     "WorldInfo.speed": ("float | str", 'requested simulated seconds per second, or "max"'),
@@ -36,6 +41,7 @@ FIELDS = {
     "Descendant.first_genes": ("Genes", "genes of the first parent"),
     "Descendant.second_genes": ("Genes", "genes of the second parent"),
     "Descendant.genes": ("Genes", "genes of the descendant"),
+    "ClassInfo.ranges": ("Mapping[str, tuple[float, float]] | None", "narrower ranges by parameter, as (min, max)"),
     "Descendant.from_second": ("int", "bit g is set if gene g comes from the second parent; g counts from 0"),
 }
 COLUMNS_MAX = 120
@@ -142,7 +148,8 @@ class Generator:
             lines += ["", f"@dataclasses.dataclass(frozen=True{', eq=False' if has_arrays else ''})",
                       f"class {RENAMED.get(name, name)}(Result):", *self.docstring(name), ""]
             for field, made, comment in fields:
-                lines += self.commented(f"{field}: {made}", comment)
+                name_here = f"{field}_" if keyword.iskeyword(field) else field  # class_
+                lines += self.commented(f"{name_here}: {made}", comment)
             lines.append("")
         classes = {name: name for name in messages} | SAME
         lines += ["", "#: Message of the protocol → dataclass.", "CLASSES: Mapping[str, type[Any]] = {",

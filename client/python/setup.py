@@ -18,7 +18,8 @@ sources = here.parent.parent
 
 
 # Modules of evod.aio from which synchronous modules are generated.
-SYNCHRONOUS = ("connection.py", "evaluation.py", "experiments.py", "lab.py", "streams.py", "world_queries.py")
+SYNCHRONOUS = ("classrooms.py", "connection.py", "evaluation.py", "experiments.py", "lab.py", "streams.py",
+               "world_queries.py")
 
 
 class BuildWithGenerated(build_py):

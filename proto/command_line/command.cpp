@@ -41,7 +41,10 @@ class HelpFormat : public CLI::Formatter {
         return out.str();
     }
     std::string make_footer(const CLI::App* command) const override {
-        const CLI::App* const program = command->get_parent();
+        const CLI::App* program = command->get_parent();
+        while (program != nullptr && program->get_parent() != nullptr) {
+            program = program->get_parent();
+        }
         const std::string footer = CLI::Formatter::make_footer(command);
         return footer +
                (program != nullptr && command->get_fallthrough()

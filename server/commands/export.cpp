@@ -56,11 +56,9 @@ std::optional<replay::OrganismName> organism_named(const std::string& text) {
 /// other.
 Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& options) {
     using replay::RunTable;
-    static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
-                                                        {"organisms", RunTable::Organisms},
-                                                        {"lineage", RunTable::Lineage},
-                                                        {"population", RunTable::Population},
-                                                        {"events", RunTable::Events}};
+    static const std::map<std::string, RunTable> tables{
+        {"generations", RunTable::Generations}, {"organisms", RunTable::Organisms}, {"lineage", RunTable::Lineage},
+        {"population", RunTable::Population},   {"events", RunTable::Events},       {"notes", RunTable::Notes}};
     const auto table = tables.find(options.what);
     if (table == tables.end() && options.bundle.empty()) {
         return wrong_option("--what", "a table that evod export --help lists, or --bundle FOLDER instead", "nothing");
@@ -179,8 +177,8 @@ void add_export_command(command_line::Command& app) {
                 "--what", &options.what,
                 "Table to export. generations: statistics; organisms: parents, genes and cause of death of each "
                 "organism; lineage: parents of each organism; population: genes of one generation, as input for "
-                "--population; events: the commands of the run")
-            .choices({"generations", "organisms", "lineage", "population", "events"});
+                "--population; events: the commands of the run; notes: the notes that users have added")
+            .choices({"generations", "organisms", "lineage", "population", "events", "notes"});
     command.add_option(
         "--of", &options.of,
         "Only with --what lineage: export only the organism GENERATION:ISLAND:ORGANISM and its ancestors");

@@ -66,12 +66,12 @@ void add_token_command(command_line::Command& app) {
 
     auto& add = token.add_command("add", "Create a token and print it; it cannot be printed again");
     add.add_option("name", &options.name, "Name of the user, 1 to 64 characters of a-z A-Z 0-9 _ - .").required();
-    add.add_option(
-           "--role", &options.role,
-           "Role of the user. viewer: may view worlds; controller: may also run worlds and set parameters; admin: "
-           "may also create and delete worlds, and shut the server down")
+    add.add_option("--role", &options.role,
+                   "Role of the user. viewer: may view worlds; teacher: may also create classes and control their "
+                   "worlds; controller: may also run worlds and set parameters; admin: "
+                   "may also create and delete worlds, and shut the server down")
         .required()
-        .choices({"viewer", "controller", "admin"});
+        .choices({"viewer", "teacher", "controller", "admin"});
     set_up(add, add_token);
 
     auto& list = token.add_command("list", "Print the names and roles of all tokens");

@@ -164,7 +164,8 @@ Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
     constexpr std::pair<const char*, RunTable> names[] = {{"generations.csv", RunTable::Generations},
                                                           {"organisms.csv", RunTable::Organisms},
                                                           {"lineage.csv", RunTable::Lineage},
-                                                          {"events.csv", RunTable::Events}};
+                                                          {"events.csv", RunTable::Events},
+                                                          {"notes.csv", RunTable::Notes}};
     for (const auto& [name, table] : names) {
         const replay::WantedTable wanted{.table = table, .format = csv};
         if (auto done =
@@ -194,9 +195,9 @@ Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
 
 /// The names of all files that a bundle can contain while it is written.
 std::set<std::string> names_in_bundle(const std::string& run_file) {
-    return {run_file,          run_file + "-journal", run_file + "-wal", run_file + "-shm",
-            "experiment.json", "population.csv",      "generations.csv", "organisms.csv",
-            "lineage.csv",     "events.csv",          "REPEAT.md",       "SHA256SUMS"};
+    return {run_file,         run_file + "-journal", run_file + "-wal", run_file + "-shm", "experiment.json",
+            "population.csv", "generations.csv",     "organisms.csv",   "lineage.csv",     "events.csv",
+            "notes.csv",      "REPEAT.md",           "SHA256SUMS"};
 }
 
 /// Deletes the folder of a bundle that an ended program left unfinished. Refused if it contains other files.

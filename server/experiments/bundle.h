@@ -3,7 +3,7 @@
 //   NAME.evod        a copy of the run file, consistent even if a server writes to the original
 //   experiment.json  the initial parameters and the seed of the run
 //   population.csv   the initial organisms, if a population was given
-//   generations.csv, organisms.csv, lineage.csv, events.csv
+//   generations.csv, organisms.csv, lineage.csv, events.csv, notes.csv
 //   REPEAT.md        instructions to repeat the run, and the version of evod that they need
 //   SHA256SUMS       checksums of all files, for `sha256sum --check`
 #pragma once

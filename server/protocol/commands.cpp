@@ -286,7 +286,12 @@ void add_faults(const v1::ExportRun& request, Violations& violations) {
     if (!is_word(v1::RunTable_descriptor(), request.table())) {
         violations.push_back({"export_run.table", "a value of RunTable, from 1", std::to_string(request.table())});
     }
-    if (!is_word(v1::TextFormat_descriptor(), request.format())) {
+    if (request.table() == v1::RUN_TABLE_FILE) {
+        if (request.format() != v1::TEXT_FORMAT_UNSPECIFIED) {
+            violations.push_back(
+                {"export_run.format", "absent if table is RUN_TABLE_FILE", std::to_string(request.format())});
+        }
+    } else if (!is_word(v1::TextFormat_descriptor(), request.format())) {
         violations.push_back({"export_run.format", "a value of TextFormat, from 1", std::to_string(request.format())});
     }
     if (request.has_generation() && request.table() != v1::RUN_TABLE_POPULATION) {

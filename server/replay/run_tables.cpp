@@ -2,6 +2,7 @@
 
 #include "evod/v1/commands.pb.h"
 #include "server/replay/columns.h"
+#include "server/replay/exported_file.h"
 #include "server/replay/generation_reader.h"
 #include "server/replay/lineage.h"
 
@@ -333,12 +334,11 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
     return {};
 }
 
-Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format format, bool only_users) {
+/// Calls `of_entry` with each entry of the journal and its request, as long as `out` is good.
+template <class OfEntry>
+Result<void> for_each_entry(const RunSource& run, const std::ostream& out, OfEntry&& of_entry) {
     constexpr std::uint32_t entries_at_once = 1000;
     constexpr std::size_t bytes_at_once = 256 << 10; // they stay in memory while the job waits for its client
-    google::protobuf::util::JsonPrintOptions json_options;
-    json_options.preserve_proto_field_names = true;
-    Table table{out, format, {"number", "tick", "sender", "user", "program", "address", "kind", "request"}};
     for (std::uint64_t first = 1; out;) {
         const auto entries = run.file.journal().read(first, entries_at_once, bytes_at_once);
         if (!entries) {
@@ -353,30 +353,62 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
                 return {};
             }
             v1::Request request;
-            std::string json;
-            const bool parsed = request.ParseFromString(entry.origin.request);
-            // These two fields would allow another client to send the next command under the identity of this one.
-            request.clear_client_key();
-            request.clear_request_id();
-            if (!parsed || !MessageToJsonString(request, &json, json_options).ok()) {
+            if (!request.ParseFromString(entry.origin.request) || !of_entry(entry, request)) {
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = run.file.path() + " is damaged: entry " + std::to_string(entry.number) +
                                           " of its journal is not a request",
                                .violations = {}};
             }
-            const base::Actor& by = entry.origin.by;
-            table.number(entry.number)
-                .number(entry.tick)
-                .text(by.kind == base::Actor::Kind::Server ? "server" : "client")
-                .text(by.user)
-                .text(only_users ? "" : by.program)
-                .text(only_users ? "" : by.address)
-                .text(kind_of(request))
-                .json(json)
-                .end_row();
         }
     }
     return {};
+}
+
+const char* sender_of(const run_file::JournalEntry& entry) {
+    return entry.origin.by.kind == base::Actor::Kind::Server ? "server" : "client";
+}
+
+Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format format, bool only_users) {
+    google::protobuf::util::JsonPrintOptions json_options;
+    json_options.preserve_proto_field_names = true;
+    Table table{out, format, {"number", "tick", "sender", "user", "program", "address", "kind", "request"}};
+    return for_each_entry(run, out, [&](const run_file::JournalEntry& entry, v1::Request& request) {
+        // These two fields would allow another client to send the next command under the identity of this one.
+        request.clear_client_key();
+        request.clear_request_id();
+        std::string json;
+        if (!MessageToJsonString(request, &json, json_options).ok()) {
+            return false;
+        }
+        const base::Actor& by = entry.origin.by;
+        table.number(entry.number)
+            .number(entry.tick)
+            .text(sender_of(entry))
+            .text(by.user)
+            .text(only_users ? "" : by.program)
+            .text(only_users ? "" : by.address)
+            .text(kind_of(request))
+            .json(json)
+            .end_row();
+        return true;
+    });
+}
+
+Result<void> write_notes(const RunSource& run, std::ostream& out, Table::Format format) {
+    Table table{out, format, {"number", "tick", "generation", "sender", "user", "kind", "text"}};
+    return for_each_entry(run, out, [&](const run_file::JournalEntry& entry, const v1::Request& request) {
+        if (request.has_add_note()) {
+            table.number(entry.number)
+                .number(entry.tick)
+                .number(run.file.generations().at_tick(entry.tick))
+                .text(sender_of(entry))
+                .text(entry.origin.by.user)
+                .text(request.add_note().kind())
+                .text(request.add_note().text())
+                .end_row();
+        }
+        return true;
+    });
 }
 
 } // namespace
@@ -424,9 +456,13 @@ Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::o
     case RunTable::Population:
         return write_population(run, out, wanted.format, wanted.generation.value_or(run.file.generations().last()));
     case RunTable::Events:
+        return write_events(run, out, wanted.format, wanted.only_users);
+    case RunTable::Notes:
+        return write_notes(run, out, wanted.format);
+    case RunTable::File:
         break;
     }
-    return write_events(run, out, wanted.format, wanted.only_users);
+    return write_exported_file(run.file, wanted.only_users, run.stop, out);
 }
 
 } // namespace evod::replay

@@ -5,6 +5,8 @@
 //   lineage      one row per organism: its parents with their islands, and the number of its children
 //   population   one row per organism of one generation: its genes. Another world can begin with this table.
 //   events       the journal: one row per applied command
+//   notes        one row per note in the journal
+//   file         not a table: the bytes of a copy of the run file (exported_file.h)
 //
 // Rows are written generation by generation. Generations that are not retained are simulated again.
 #pragma once
@@ -19,7 +21,7 @@
 
 namespace evod::replay {
 
-enum class RunTable { Generations, Organisms, Lineage, Population, Events };
+enum class RunTable { Generations, Organisms, Lineage, Population, Events, Notes, File };
 
 /// An organism, identified by the generation and island in which it was born, and by its id there.
 struct OrganismName {
@@ -29,14 +31,14 @@ struct OrganismName {
 
 struct WantedTable {
     RunTable table = RunTable::Generations;
-    Table::Format format = Table::Format::Csv;
+    Table::Format format = Table::Format::Csv; // of a file: ignored
     // Population table only: the generation to write; nullopt: the last generation that has begun.
     std::optional<std::uint64_t> generation = {};
     // Lineage table only: write this organism and its ancestors, newest first; nullopt: all organisms.
     std::optional<OrganismName> of = {};
     // Lineage table only: leave out earlier generations. At most the last generation that has begun.
     std::uint64_t first_generation = 0;
-    // Events table only: true writes the user who sent a command, but not the program and the address.
+    // Events and file only: true writes the user who sent a command, but not the program and the address.
     bool only_users = false;
 };
 

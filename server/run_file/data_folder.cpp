@@ -27,6 +27,24 @@ base::Refusal unusable(const std::string& path, const std::string& why) {
             .violations = {}};
 }
 
+/// Deletes the copies that exports of a killed server have left.
+void remove_copies(const std::string& folder) {
+    const std::string mark = std::string{ending} + std::string{DataFolder::copy_mark};
+    std::error_code error;
+    std::vector<fs::path> copies;
+    for (fs::directory_iterator file{folder, error}, end; !error && file != end; file.increment(error)) {
+        const std::string name = file->path().filename().string();
+        const std::size_t at = name.find(mark);
+        if (at != std::string::npos && simulation::is_world_name(name.substr(0, name.find('.'))) &&
+            file->is_regular_file(error)) {
+            copies.push_back(file->path());
+        }
+    }
+    for (const fs::path& copy : copies) {
+        fs::remove(copy, error);
+    }
+}
+
 } // namespace
 
 base::Result<DataFolder> DataFolder::open(const std::string& path) {
@@ -46,6 +64,7 @@ base::Result<DataFolder> DataFolder::open(const std::string& path) {
         return unusable(path, why == EWOULDBLOCK ? "another server is using it; name another folder with --data"
                                                  : std::strerror(why));
     }
+    remove_copies(path);
     return DataFolder{path, lock};
 }
 

@@ -5,6 +5,7 @@
 //   NAME.evod-next    a run that is being created; it becomes NAME.evod
 //   NAME.damaged-N.evod   the file of a damaged world that was deleted; no server reads it
 //   classes.sqlite    the classes of students (classes/registry)
+//   NAME.evod.copy-…  a copy for an export (replay/exported_file.h); open() deletes those that a killed server left
 //
 // Owner        one server. It locks the file `lock`, so that a second server for the same folder is refused.
 #pragma once
@@ -13,6 +14,7 @@
 #include "server/simulation/commands.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evod::run_file {
@@ -26,6 +28,9 @@ class DataFolder {
     DataFolder(DataFolder&& other) noexcept;
     DataFolder& operator=(DataFolder&&) = delete;
     ~DataFolder();
+
+    /// In the names of copies, after that of the copied file.
+    static constexpr std::string_view copy_mark = ".copy-";
 
     const std::string& path() const { return path_; }
     std::string file_of(const std::string& world) const;

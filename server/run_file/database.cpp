@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <cstring>
+#include <utility>
 
 namespace evod::run_file {
 
@@ -93,16 +94,26 @@ void Database::copy_log() {
     }
 }
 
-void Database::copy_to(const std::string& path) {
+void Database::stop_when(base::StopCheck stop) {
+    constexpr int instructions = 10'000; // of SQLite's virtual machine, between two questions
+    stop_ = std::move(stop);
+    if (!failed()) {
+        sqlite3_progress_handler(
+            handle_.get(), instructions, [](void* self) { return int{static_cast<Database*>(self)->stop_()}; }, this);
+    }
+}
+
+void Database::copy_to(const std::string& path, const base::StopCheck& stop) {
     if (failed()) {
         return;
     }
     Database copy{path, Mode::Create};
     if (!copy.failed()) {
         sqlite3_backup* backup = sqlite3_backup_init(copy.handle_.get(), "main", handle_.get(), "main");
-        constexpr int all_pages = -1;
-        if (backup != nullptr) {
-            sqlite3_backup_step(backup, all_pages);
+        constexpr int pages_at_once = 1000;
+        int code = backup == nullptr ? SQLITE_ERROR : SQLITE_OK;
+        while (code == SQLITE_OK && !stop()) {
+            code = sqlite3_backup_step(backup, pages_at_once);
         }
         copy.check(backup == nullptr ? sqlite3_errcode(copy.handle_.get()) : sqlite3_backup_finish(backup));
     }

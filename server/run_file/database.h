@@ -5,6 +5,8 @@
 // Owner        one thread at a time.
 #pragma once
 
+#include "server/base/stop_check.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -46,8 +48,12 @@ class Database {
     /// Copies pages of the write-ahead log into the file, except pages that a reader of an older snapshot blocks. At
     /// most one thread at a time may call this for one file.
     void copy_log();
-    /// Copies this database to a new file. Within a read transaction, copies the snapshot of that transaction.
-    void copy_to(const std::string& path);
+    /// Copies this database to a new or empty file. Within a read transaction, copies the snapshot of that transaction.
+    ///
+    /// stop  stops the work, which then fails.
+    void copy_to(const std::string& path, const base::StopCheck& stop = {});
+    /// From now on, statements fail if `stop` says so.
+    void stop_when(base::StopCheck stop);
 
   private:
     friend class Statement;
@@ -60,6 +66,7 @@ class Database {
     std::string error_;
     bool damaged_ = false;
     std::uint32_t log_pages_ = 0;
+    base::StopCheck stop_;
 };
 
 /// A prepared statement. The database must outlive it.

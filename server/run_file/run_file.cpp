@@ -209,8 +209,8 @@ Result<void> RunFile::pin_snapshot() {
     return retention_.read();
 }
 
-Result<void> RunFile::copy_to(const std::string& path) {
-    database_.database.copy_to(path);
+Result<void> RunFile::copy_to(const std::string& path, const base::StopCheck& stop) {
+    database_.database.copy_to(path, stop);
     return database_.unless_failed();
 }
 

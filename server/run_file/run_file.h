@@ -65,8 +65,8 @@ class RunFile : public RunContents {
 
     /// Makes this object read only the current contents of the file, even if a server writes to it later.
     base::Result<void> pin_snapshot();
-    /// Copies the pinned snapshot to a new file.
-    base::Result<void> copy_to(const std::string& path);
+    /// Copies the pinned snapshot to a new or empty file. If `stop` stops the work, the copy is not complete.
+    base::Result<void> copy_to(const std::string& path, const base::StopCheck& stop = {});
 
     // Writing. After an error, nothing more is written: commit() reports the error, and the caller must open the file
     // again. A row replaces an existing row with the same key.

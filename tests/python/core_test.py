@@ -5,6 +5,7 @@ import unittest
 
 import evod
 from evod import framing, plans
+from evod.core import Core
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
 from core_support import CoreTestCase
@@ -54,6 +55,19 @@ class CoreTest(CoreTestCase):
         repeated = self.sent(core)
         self.assertEqual([message.request.request_id for message in repeated], [2, 3, 4, 5])
         self.assertEqual({message.request.client_key for message in repeated}, {core.client_key})
+
+    def test_a_member_joins_once_and_comes_back_with_the_token(self):
+        core = Core(join=session_pb2.Join(code="KTRMXB", name="Ada"), client_name="test", server="lab:1")
+        welcome = session_pb2.Welcome(protocol_version=1, membership=session_pb2.Membership(token="of Ada"))
+        hellos = []
+        for _ in range(3):
+            core.opened()
+            hellos += [message.hello for message in self.sent(core)]
+            core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
+            welcome.membership.token = ""
+            core.lost(evod.NoConnection("gone"))
+        self.assertEqual([(hello.join.code, hello.join.name, hello.token) for hello in hellos],
+                         [("KTRMXB", "Ada", ""), ("", "", "of Ada"), ("", "", "of Ada")])
 
     def test_a_replay_that_opens_too_late_is_closed(self):
         core = self.core()

@@ -30,7 +30,7 @@ class Docstrings(unittest.TestCase):
                         self.assertTrue(value.__doc__, f"{package.__name__}.{name}.{member}")
 
     def test_synchronous_docstrings_await_nothing(self):
-        for name in ("connection", "evaluation", "experiments", "lab", "streams", "world_queries"):
+        for name in ("classrooms", "connection", "evaluation", "experiments", "lab", "streams", "world_queries"):
             source = inspect.getsource(importlib.import_module(f"evod.{name}"))
             for word in ("await ", "async ", "evod.aio"):
                 self.assertNotIn(word, source.partition("\n\n")[2], name)

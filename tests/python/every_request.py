@@ -3,6 +3,8 @@
 One coroutine serves both: it awaits only what can be awaited. With evod it never suspends."""
 import inspect
 
+from evod.v1 import commands_pb2 as c
+
 
 def record_kinds(lab):
     """A set to which the kind of every later request is added."""
@@ -110,7 +112,20 @@ async def send_every_request(lab):
     await result(world.set_speed(2.0))
     await result(world.pause())
 
+    # Notes, classes.
+    await result(world.note("a remark"))
+    assert [note.text for note in await result(world.notes())] == ["a remark"]
+    bio2 = await result(lab.create_class("bio2", {"population_size": 10}))
+    assert [code.name for code in await result(bio2.add_members(["Ada"]))] == ["Ada"]
+    assert len(await result(bio2.new_personal_code("Ada"))) == 10
+    assert len(await result(bio2.open())) == 6
+    assert [room.name for room in await result(lab.classes())] == ["bio2"]
+    assert await result(bio2.set_speed("max")) == {}
+    await result(lab.request(make_qr_codes=c.MakeQrCodes(texts=["http://lab:7745/#join=KTRMXB"])))
+    await result(bio2.delete())
+
     # Queries.
+    assert await result(world.observe("mean(fitness_best)")) is not None
     assert len((await result(world.statistics())).live) == 1
     assert (await result(world.organism(3))).id == 3
     assert (await result(world.population())).genes.shape == (10, 6)

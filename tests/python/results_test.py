@@ -12,7 +12,7 @@ import evod
 from evod import plans, tables
 from evod.conversion import result
 from evod.results import CLASSES, STATES
-from evod.v1 import commands_pb2, stream_pb2, world_pb2
+from evod.v1 import commands_pb2, session_pb2, stream_pb2, world_pb2
 
 VECTORS = pathlib.Path(__file__).resolve().parents[2] / "proto/vectors"
 SMALL = {"island_count": 2, "population_size": 12, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
@@ -26,10 +26,12 @@ class Numbers(unittest.TestCase):
 
 class Conversion(unittest.TestCase):
     def test_every_field_of_the_protocol_is_converted(self):
-        messages = {**world_pb2.DESCRIPTOR.message_types_by_name, **commands_pb2.DESCRIPTOR.message_types_by_name}
+        messages = {name: message for module in (world_pb2, commands_pb2, session_pb2)
+                    for name, message in module.DESCRIPTOR.message_types_by_name.items()}
         for name, kind in CLASSES.items():
-            fields = [field.name for field in dataclasses.fields(kind)]
+            fields = [field.name.removesuffix("_") for field in dataclasses.fields(kind)]  # `class` is a keyword
             left_out = {evod.results.EntityIds: {"by"},  # in events only
+                        evod.ClassInfo: {"template"},
                         evod.results.Descendant: {"more_from_second"}}.get(kind, set())  # part of from_second
             self.assertEqual(set(fields), set(messages[name].fields_by_name) - left_out, name)
 

@@ -14,8 +14,13 @@ import waiting
 from past_test import CREATE, EVOD, EVOCTL, c, plain, w
 
 WHATS = {"generations": c.RUN_TABLE_GENERATIONS, "organisms": c.RUN_TABLE_ORGANISMS, "lineage": c.RUN_TABLE_LINEAGE,
-         "population": c.RUN_TABLE_POPULATION, "events": c.RUN_TABLE_EVENTS}
+         "population": c.RUN_TABLE_POPULATION, "events": c.RUN_TABLE_EVENTS,
+         "notes": c.RUN_TABLE_NOTES}
 INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION = 3, 5, 9
+
+
+def copies_in(folder):
+    return [path.name for path in pathlib.Path(folder).glob("*.evod.copy-*")]
 
 
 class Runs(past.Case):
@@ -103,6 +108,10 @@ class Export(Runs):
     def test_every_table_is_the_one_that_evod_export_writes(self):
         server, client = self.serve()
         self.run_world(client, 5)
+        client.call(add_note=c.AddNote(world="w", kind="answer", text='5, because "more" is better\n'))
+        self.assertEqual(self.table(client, table=c.RUN_TABLE_NOTES)[0].splitlines()[0],
+                         "number,tick,generation,sender,user,kind,text")
+        self.assertIn(',5,client,,answer,"5, because ""more"" is better\n"\n', self.evod_export("--what", "notes"))
         for what, table in WHATS.items():
             # At once, and of a file that lags behind otherwise.
             text, _ = self.table(client, table=table)
@@ -124,6 +133,44 @@ class Export(Runs):
                          ancestors)
         self.assertEqual(self.evoctl(server, "--what", "population", "--generation", "2"),
                          self.evod_export("--what", "population", "--generation", "2"))
+
+    def test_a_copy_of_the_file_is_a_run_file(self):
+        server, client = self.serve()
+        self.run_world(client, 30)
+        client.call(run=c.Run(world="w"))
+        copy = pathlib.Path(self.folder, "copy.evod")
+        self.evoctl(server, "--what", "file", "--output", copy)
+        self.assertEqual(copies_in(self.folder), [])
+        client.call(pause=c.Pause(world="w"))
+        verified = waiting.run([EVOD, "verify", copy], capture_output=True, text=True)
+        self.assertEqual(verified.returncode, 0, verified.stderr)
+        with contextlib.closing(sqlite3.connect(copy)) as run:
+            self.assertEqual({key for key, in run.execute("SELECT client_key FROM journal")}, {"exported"})
+        replayed = self.client(self.server("replay", copy))
+        self.assertEqual(replayed.world("w").name, "w")
+        data = pathlib.Path(self.folder, "continued")
+        data.mkdir()
+        shutil.copy(copy, data / "w.evod")
+        continued = self.client(self.server("--data", data))
+        continued.call(run=c.Run(world="w", generations=1))
+        self.assertIn("not with --what file", self.evoctl(server, "--what", "file", "--format", "jsonl", status=2))
+        self.refused(client, INVALID_ARGUMENT, "format", table=c.RUN_TABLE_FILE)
+
+    def test_copies_do_not_outlive_their_client_or_a_kill(self):
+        server, client = self.serve()
+        self.run_world(client, 5)
+        client.call(run=c.Run(world="w"))
+        for _ in range(5):
+            gone = self.client(server)
+            gone.ask(export_run=c.ExportRun(world="w", table=c.RUN_TABLE_FILE))
+            gone.socket.close()
+        plain.until(lambda: not copies_in(self.folder), "no copies")
+        for _ in range(5):
+            self.client(server).ask(export_run=c.ExportRun(world="w", table=c.RUN_TABLE_FILE))
+        server.kill()
+        pathlib.Path(self.folder, "w.evod.copy-1a2B3c").write_text("left by a kill")
+        self.serve()
+        self.assertEqual(copies_in(self.folder), [])
 
     def test_a_running_world_can_be_exported(self):
         _, client = self.serve()

@@ -30,6 +30,15 @@ BASE = {
     "subscribe_snapshots": c.SubscribeSnapshots(rate_hz=1),
     "seek": c.Seek(to=c.RunMoment(tick=0)),
     "set_view": c.SetView(view=c.View(detail=1)),
+    "add_note": c.AddNote(kind="note", text="a remark"),
+    "observe": c.Observe(expressions=["mean(fitness_mean)"]),
+    "for_each_world": c.ForEachWorld(**{"class": "bio2"}),
+    "create_class": c.CreateClass(name="made"),
+    "update_class": c.UpdateClass(**{"class": "bio2"}),
+    "delete_class": c.DeleteClass(**{"class": "bio2"}),
+    "add_members": c.AddMembers(**{"class": "bio2"}),
+    "change_member": c.ChangeMember(**{"class": "bio2", "number": 1}),
+    "make_qr_codes": c.MakeQrCodes(texts=["http://lab:7745/#join=KTRMXB"]),
     "export_run": c.ExportRun(table=c.RUN_TABLE_GENERATIONS, format=c.TEXT_FORMAT_CSV),
 }
 # Fields with their own bounds: the last valid and the first invalid value on either side.
@@ -116,6 +125,7 @@ class Walk(access.Access):
         self.sent = self.subscription_id = 0
         self.make("walked")
         self.make("untouched")
+        self.make_class()
         self.fresh = self.state()
 
     def tearDown(self):
@@ -131,13 +141,19 @@ class Walk(access.Access):
         self.server_.process.terminate()
         self.assertEqual(waiting.ended(self.server_.process), 0, self.server_.output())
         folder = pathlib.Path(self.folder)
-        self.assertLessEqual({path.suffix for path in folder.iterdir()} - {""}, {".evod", ".evod-wal", ".evod-shm"})
+        self.assertLessEqual({path.suffix for path in folder.iterdir()} - {""},
+                             {".evod", ".evod-wal", ".evod-shm", ".sqlite", ".sqlite-wal", ".sqlite-shm"})
         for elsewhere in (folder.parent / "x", folder.parent / "x.evod", pathlib.Path("/tmp/x"),
                           pathlib.Path("/tmp/x.evod"), pathlib.Path("/etc/passwd.evod")):
             self.assertFalse(elsewhere.exists(), elsewhere)
 
     def make(self, name):
         self.client.call(create_world=c.CreateWorld(name=name, seed=5, parameters=plain.assignments(generation_s=1.0)))
+
+    def make_class(self):
+        """A class with a member who has not joined, so that there is no world of it."""
+        self.client.call(create_class=c.CreateClass(name="bio2", template=c.CreateWorld(seed=1)))
+        self.client.call(add_members=c.AddMembers(**{"class": "bio2"}, names=["Ada"]))
 
     def state(self):
         statistics = self.client.call(get_statistics=c.GetStatistics(world="walked")).statistics
@@ -152,6 +168,10 @@ class Walk(access.Access):
         worlds = {world.name for world in self.client.call(list_worlds=c.ListWorlds()).worlds.worlds}
         for name in worlds - {"default", "walked", "untouched"}:
             self.client.call(delete_world=c.DeleteWorld(world=name))
+        classes = {one.name for one in self.client.call(list_classes=c.ListClasses()).classes.classes}
+        for name in classes:
+            self.client.call(delete_class=c.DeleteClass(**{"class": name}))
+        self.make_class()
         if "walked" not in worlds or self.state() != self.fresh:
             if "walked" in worlds:
                 self.client.call(delete_world=c.DeleteWorld(world="walked"))

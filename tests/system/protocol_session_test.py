@@ -237,6 +237,7 @@ class Requests(WithServer):
                      "place": {"items": [c.PlacedItem(kind=c.ITEM_KIND_FOOD, x_px=640, y_px=360)]},
                      "remove": {"food": [0]}, "set_fitness": {"fitness": [0]}, "fork_world": {"name": "new"},
                      "seek": {"to": c.RunMoment(tick=1)},
+                     "add_note": {"kind": "note", "text": "x"}, "observe": {"expressions": ["mean(fitness_mean)"]},
                      "export_run": {"table": c.RUN_TABLE_EVENTS, "format": c.TEXT_FORMAT_CSV}}
             for world in ("nowhere", "no\nwhere", "ü" * 1000):
                 request = {field.name: kind(world=world, **extra.get(field.name, {}))}

@@ -376,9 +376,9 @@ class Export(Case):
         evod("export", run, "--bundle", folder)
         self.assertEqual(sorted(file.name for file in folder.iterdir()),
                          sorted(["REPEAT.md", "SHA256SUMS", "events.csv", "experiment.json", "generations.csv",
-                                 "lineage.csv", "organisms.csv", *names]))
+                                 "lineage.csv", "notes.csv", "organisms.csv", *names]))
         subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=folder, check=True)
-        for what in "generations", "organisms", "lineage", "events":
+        for what in "generations", "organisms", "lineage", "events", "notes":
             self.assertEqual((folder / f"{what}.csv").read_text(),
                              evod("export", folder / "small.evod", "--what", what))
         self.assertIn("everything agrees", evod("verify", folder / "small.evod"))

@@ -17,8 +17,10 @@ tasks of an executor.
 evod.results, evod.version, and a synchronous module for every module of evod.aio that has one, such as evod.lab, are
 generated when the package is built (setup.py).
 """
+from evod.class_plans import Note
+from evod.classrooms import Classroom
 from evod.comparisons import ComparedWorld, Comparison, Difference
-from evod.connection import LocalLab, connect, local
+from evod.connection import LocalLab, connect, join, local
 from evod.errors import (
     Aborted,
     AlreadyExists,
@@ -54,6 +56,9 @@ from evod.results import (
     Breeding,
     CauseOfDeath,
     Choice,
+    ClassInfo,
+    ClassMember,
+    ClassSeeds,
     Contender,
     DamagedWorld,
     Descendant,
@@ -65,6 +70,7 @@ from evod.results import (
     GenerationStatistics,
     GeneStatistics,
     LiveStatistics,
+    Membership,
     Migrant,
     Motion,
     Mutation,
@@ -72,6 +78,7 @@ from evod.results import (
     OrderMutation,
     OrganismInfo,
     Outcome,
+    PersonalCode,
     Pick,
     ReplayRange,
     RunState,
@@ -90,22 +97,17 @@ PAUSED, RUNNING, TERMINATED, WAITING = RunState.PAUSED, RunState.RUNNING, RunSta
 
 __all__ = [
     "Aborted", "Actor", "AlreadyExists", "AnswerExpired", "AwaitedFitness", "Box", "Brain", "Boxes", "Breeding",
-           "ByGene", "CauseOfDeath", "Choice", "ComparedWorld",
-    "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail", "Difference",
-           "EntityIds", "Error", "Evaluation",
-    "Events", "FailedPrecondition", "FileNotFound", "Front", "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics",
-           "Generation",
-    "GenerationStatistics", "Genes", "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics",
-           "LocalLab", "Migrant", "MissingPackage",
-    "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "OrderMutation", "Organism", "OrganismInfo",
-           "Organisms",
-    "Outcome", "PAUSED", "Parameter", "Parameters", "PermissionDenied", "Pick", "PlannedChange", "Population",
-           "ProgramFailed",
-    "RUNNING", "Registry", "Repaired", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState",
-           "Snapshot", "Snapshots",
-    "Solution", "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout", "Unauthenticated",
-           "Unavailable",
-    "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__", "compare", "connect", "hypervolume",
-           "local", "nondominated", "open_run", "open_sweep",
-    "run", "run_table", "sweep",
+    "ByGene", "CauseOfDeath", "Choice", "ClassInfo", "ClassMember", "ClassSeeds", "Classroom", "ComparedWorld",
+    "Comparison", "Contender", "DamagedData", "DamagedWorld", "Descendant", "DescendantKind", "Detail",
+    "Difference", "EntityIds", "Error", "Evaluation", "Events", "FailedPrecondition", "FileNotFound", "Front",
+    "GENE_NAMES", "GeneAccount", "GeneGroup", "GeneStatistics", "Generation", "GenerationStatistics", "Genes",
+    "History", "InvalidArgument", "Item", "Items", "Lab", "Life", "LiveStatistics", "LocalLab", "Membership",
+    "Migrant", "MissingPackage", "Motion", "Mutation", "MutationKind", "NoConnection", "NotFound", "Note",
+    "OrderMutation", "Organism", "OrganismInfo", "Organisms", "Outcome", "PAUSED", "Parameter", "Parameters",
+    "PermissionDenied", "PersonalCode", "Pick", "PlannedChange", "Population", "ProgramFailed", "RUNNING",
+    "Registry", "Repaired", "Replay", "ReplayRange", "ResourceExhausted", "Run", "RunFile", "RunState", "Snapshot",
+    "Snapshots", "Solution", "Statistics", "Storage", "StorageState", "Sweep", "TERMINATED", "Tile", "Timeout",
+    "Unauthenticated", "Unavailable", "Unimplemented", "Violation", "WAITING", "World", "WorldInfo", "__version__",
+    "compare", "connect", "hypervolume", "join", "local", "nondominated", "open_run", "open_sweep", "run",
+    "run_table", "sweep",
 ]  # fmt: skip

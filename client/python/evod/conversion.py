@@ -44,6 +44,7 @@ _SPECIAL: Mapping[str, Callable[[Any], Any]] = {
     "Brain.inputs": _activations,
     "Brain.hidden": _activations,
     "Brain.outputs": _activations,
+    "ClassInfo.ranges": lambda quota: {range.parameter: (range.min, range.max) for range in quota.ranges},
     "Breeding.parameters": lambda assigned: {assignment.name: value_of(assignment.value) for assignment in assigned},
 }
 
@@ -62,7 +63,7 @@ _Converter = Callable[[google.protobuf.message.Message, Sequence[str]], Any]
 def _converters(message: google.protobuf.descriptor.Descriptor) -> tuple[type[Any], tuple[_Converter, ...]]:
     result_class = CLASSES[message.name]
     fields = dataclasses.fields(result_class)
-    return result_class, tuple(_converter(message.fields_by_name[field.name]) for field in fields)
+    return result_class, tuple(_converter(message.fields_by_name[field.name.removesuffix("_")]) for field in fields)
 
 
 def _from_second(descendant: Any, names: Sequence[str]) -> int:

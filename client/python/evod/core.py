@@ -142,10 +142,12 @@ class _StreamState:
 class Core:
     """The state of one client. Error messages contain `server`."""
 
-    def __init__(self, *, token: str, client_name: str, server: object) -> None:
+    def __init__(self, *, token: str = "", join: session_pb2.Join | None = None, client_name: str,
+                 server: object) -> None:
         self._hello = session_pb2.ClientMessage(
             hello=session_pb2.Hello(
-                protocol_version=PROTOCOL_VERSION, client_name=client_name, client_version=__version__, token=token
+                protocol_version=PROTOCOL_VERSION, client_name=client_name, client_version=__version__, token=token,
+                join=join
             )
         )
         self._server = server
@@ -355,6 +357,9 @@ class Core:
             )
             raise self.failed
         self.welcome, self.loss = message.welcome, None
+        if token := message.welcome.membership.token:  # later sessions are of the same member
+            self._hello.hello.ClearField("join")
+            self._hello.hello.token = token
         # All subscriptions are sent first, so that subscribers receive the events that the other requests cause.
         for subscription in self._live_subscriptions():
             self._resubscribe(subscription)

@@ -16,6 +16,7 @@ from evod.genes import GeneNames, Genes
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.plans import (
     build,
+    execute,
     gene_list,
     gene_names,
     gene_names_of,
@@ -212,6 +213,34 @@ class LabPlans:
         if welcome is not None and feature not in welcome.features:
             raise Unimplemented(f"the server, evod {welcome.server_version}, {what}: update it")
 
+    def new_world(
+        self,
+        name: str,
+        parameters: Mapping[str, object],
+        seed: int | None,
+        population: Sequence[numpy.typing.ArrayLike] | None,
+    ) -> Plan[c.CreateWorld]:
+        """Returns the request that creates a world."""
+        registry = yield from self.registry()
+        parameters = dict(parameters)
+        listed = parameters.pop("free_genes", None)
+        if not isinstance(listed, (list, tuple)) and listed is not None:
+            parameters["free_genes"] = listed
+        first, later = registry.planned(parameters)
+        if later:
+            self._require("planned_changes", "does not support planned changes")
+        return build(
+            c.CreateWorld,
+            "create_world.",
+            name=name,
+            parameters=first,
+            schedule=later,
+            seed=seed,
+            population=[c.IslandPopulation(genes=_numbers(genes, listed).ravel()) for genes in population or ()],
+            population_gene_names=_gene_names_in(population),
+            free_genes=gene_list(listed) if isinstance(listed, (list, tuple)) else None,
+        )
+
     def create_world(
         self,
         name: str,
@@ -223,24 +252,8 @@ class LabPlans:
         """Creates a world and sets its speed; returns its name."""
         speed = self.speed_of_new_worlds if speed is None else speed
         requested = None if speed is None else speed_message(speed)  # raises before the world is created
-        registry = yield from self.registry()
-        parameters = dict(parameters)
-        listed = parameters.pop("free_genes", None)
-        if not isinstance(listed, (list, tuple)) and listed is not None:
-            parameters["free_genes"] = listed
-        first, later = registry.planned(parameters)
-        if later:
-            self._require("planned_changes", "does not support planned changes")
-        info = yield from request_world(
-            "create_world",
-            name=name,
-            parameters=first,
-            schedule=later,
-            seed=seed,
-            population=[c.IslandPopulation(genes=_numbers(genes, listed).ravel()) for genes in population or ()],
-            population_gene_names=_gene_names_in(population),
-            free_genes=gene_list(listed) if isinstance(listed, (list, tuple)) else None,
-        )
+        message = yield from self.new_world(name, parameters, seed, population)
+        info = (yield from execute(c.Request(create_world=message))).world
         world = info.name
         columns = len(info.gene_names)  # the server sees only how many numbers there are
         for island, genes in enumerate(population or ()):

@@ -67,6 +67,7 @@ TABLES = {
     "lineage": c.RUN_TABLE_LINEAGE,
     "population": c.RUN_TABLE_POPULATION,
     "events": c.RUN_TABLE_EVENTS,
+    "notes": c.RUN_TABLE_NOTES,
 }
 FORMATS = {"csv": c.TEXT_FORMAT_CSV, "jsonl": c.TEXT_FORMAT_JSON_LINES}
 DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "density": stream_pb2.DETAIL_DENSITY}
@@ -467,20 +468,24 @@ def export(
     organism = None
     if of is not None:
         organism = build(c.OrganismName, "of.", **dict(zip(("generation", "island", "organism"), of)))
-    response = yield from request(
-        "export_run",
+    data = yield from exported(
         world=world,
         table=_choice("table", table, TABLES),
         format=_choice("format", text_format, FORMATS),
         generation=generation,
         of=organism,
     )
-    part = response.export_part
-    text = [part.text]
+    return data.decode()
+
+
+def exported(**fields: Any) -> Plan[bytes]:
+    """Requests an export in several parts and returns its bytes."""
+    part = (yield from request("export_run", **fields)).export_part
+    data = [part.text]
     while not part.last:
         part = (yield from request("continue_export", export_id=part.export_id)).export_part
-        text.append(part.text)
-    return b"".join(text).decode()
+        data.append(part.text)
+    return b"".join(data)
 
 
 # ---- arguments

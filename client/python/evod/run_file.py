@@ -278,6 +278,13 @@ class RunFile:
         names = ("number", "tick", "sender", "user", "program", "address", "kind", "request")
         return pandas().DataFrame(rows, columns=names)
 
+    def notes(self) -> Any:
+        """Returns the notes in the journal as a DataFrame: number, tick, generation, sender, user, kind and text.
+
+        Runs the program evod.
+        """
+        return read_csv(Program([find_program(self._program), "export", str(self.path), "--what", "notes"]).run())
+
     def lineage(self, of: tuple[int, int, int] | None = None) -> Any:
         """Returns the parents of every organism on all islands as a DataFrame, the newest generation first.
 

@@ -142,6 +142,31 @@ TEST_F(Handshake, SendsHelloAndTakesTheWelcome) {
     EXPECT_EQ(output.wake_at, TimePoint::max()) << "no deadline is left";
 }
 
+TEST_F(Handshake, JoinsOnceAndComesBackAsTheSameMember) {
+    start({.join = Options::Join{.code = "KTRMXB", .name = "Ada"}});
+    protocol->opened(now);
+    perform();
+    const v1::Hello first = read().hello();
+    EXPECT_EQ(first.join().code(), "KTRMXB");
+    EXPECT_EQ(first.join().name(), "Ada");
+    EXPECT_EQ(first.token(), "");
+    v1::ServerMessage message;
+    message.mutable_welcome()->set_protocol_version(codec::protocol_version);
+    message.mutable_welcome()->mutable_membership()->set_token("of Ada");
+    receive(message);
+    for (int session = 0; session < 2; ++session) { // the second Welcome contains no token
+        lose();
+        wait();
+        protocol->opened(now);
+        perform();
+        const v1::Hello again = read().hello();
+        EXPECT_FALSE(again.has_join());
+        EXPECT_EQ(again.token(), "of Ada");
+        message.mutable_welcome()->mutable_membership()->clear_token();
+        receive(message);
+    }
+}
+
 TEST_F(Handshake, HasADeadlineForEachPart) {
     start({.server = {"lab", 1}, .connect_timeout = 7ms});
     EXPECT_EQ(output.wake_at, TimePoint{7ms});

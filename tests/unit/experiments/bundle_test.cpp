@@ -63,7 +63,7 @@ TEST_F(BundleTest, ContainsWhatRepeatsTheRun) {
     record(2);
     ASSERT_TRUE(write("bundle"));
     EXPECT_THAT(names(), ElementsAre("REPEAT.md", "SHA256SUMS", "events.csv", "experiment.json", "generations.csv",
-                                     "lineage.csv", "organisms.csv", "w.evod"));
+                                     "lineage.csv", "notes.csv", "organisms.csv", "w.evod"));
     const auto experiment = load_experiment(folder.path() + "/bundle/experiment.json");
     ASSERT_TRUE(experiment) << to_text(experiment.error());
     EXPECT_EQ(experiment->seed, base::Seed{7});

@@ -12,13 +12,14 @@ other streams also with `async for`. The examples in the docstrings are for a no
 
 Threads      call everything on the event loop on which connect() or local() was awaited.
 """
-from evod.aio.connection import LocalLab, connect, local
+from evod.aio.classrooms import Classroom
+from evod.aio.connection import LocalLab, connect, join, local
 from evod.aio.evaluation import Evaluation
 from evod.aio.experiments import compare, run, run_table, sweep
 from evod.aio.lab import Lab, Replay, World
 from evod.aio.streams import Events, Run, Snapshots
 
 __all__ = [
-    "Evaluation", "Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare", "connect", "local",
-           "run", "run_table", "sweep",
+    "Classroom", "Evaluation", "Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "compare",
+    "connect", "join", "local", "run", "run_table", "sweep",
 ]  # fmt: skip

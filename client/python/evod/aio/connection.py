@@ -14,6 +14,7 @@ from evod.aio.link import Link, blocking_call
 from evod.core import Core
 from evod.endpoint import Endpoint, read_token, tls_context
 from evod.experiment import Experiment
+from evod.v1 import session_pb2
 
 
 @opens
@@ -73,6 +74,61 @@ async def connect(
     endpoint = Endpoint.parse(server)
     core = Core(token=read_token(token, token_file), client_name=client_name, server=endpoint)
     link = Link(endpoint, core, tls_context(tls, ca, cert, key), timeout_s=timeout_s, reconnect=reconnect)
+    await link.open()
+    return Lab(link)
+
+
+@opens
+async def join(
+    server: str,
+    code: str,
+    name: str | None = None,
+    *,
+    tls: bool = False,
+    ca: str | None = None,
+    timeout_s: float = 30.0,
+    reconnect: bool = True,
+    client_name: str = "evod for Python",
+) -> Lab:
+    """Connects as a member of a class: with its code as a new member, with a personal code as the member to whom it
+    belongs. After the connection was lost, the lab comes back as the same member.
+
+    Parameters
+    ----------
+    server, tls, ca, timeout_s, reconnect, client_name
+        The same as for `connect`.
+    code
+        The letters of the code; upper and lower case are equal.
+    name
+        The name of a new member: at most 24 characters. By default the server makes one up.
+
+    Returns
+    -------
+    Lab
+        `Lab.membership` contains the name of the member's world.
+
+    Raises
+    ------
+    NoConnection
+        No server answers at this address, or no member can join, for example because another one has the name.
+    Unauthenticated
+        No open class has the code.
+
+    Examples
+    --------
+    >>> import evod.aio
+    >>> async with evod.aio.local() as teacher:
+    ...     bio2 = await teacher.create_class("bio2")
+    ...     async with evod.aio.join(teacher.address, await bio2.open(), "Ada") as lab:
+    ...         world = await lab.world(lab.membership.world)
+    ...         note = await world.note("more food, more organisms", kind="prediction")
+    ...     (member,) = await bio2.members()
+    >>> world.name, member.name, member.joined
+    ('bio2_ada', 'Ada', True)
+    """
+    endpoint = Endpoint.parse(server)
+    core = Core(join=session_pb2.Join(code=code, name=name or ""), client_name=client_name, server=endpoint)
+    link = Link(endpoint, core, tls_context(tls, ca, None, None), timeout_s=timeout_s, reconnect=reconnect)
     await link.open()
     return Lab(link)
 

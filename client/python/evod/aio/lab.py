@@ -11,6 +11,7 @@ import numpy.typing
 from evod import page_link, plans
 from evod.aio.attributes import ParameterAttributes
 from evod.aio.awaitable import opens, opens_stream
+from evod.aio.classrooms import Classrooms
 from evod.aio.evaluation import Evaluation
 from evod.aio.link import Link
 from evod.aio.streams import Closing, Events, Run
@@ -24,12 +25,12 @@ from evod.notebook import PageFrame, in_notebook
 from evod.parameters import Parameters, PlannedChange, Registry
 from evod.progress import ProgressLine
 from evod.rating import EndRules, Rater, refuse_unknown, Repaired
-from evod.results import DamagedWorld, EntityIds, WorldInfo
+from evod.results import DamagedWorld, EntityIds, Membership, WorldInfo
 from evod.tables import html_table
 from evod.v1 import commands_pb2 as c, session_pb2
 
 
-class Lab(Closing):
+class Lab(Classrooms, Closing):
     """A connection to a server and its worlds, returned by `connect`."""
 
     def __init__(self, link: Link) -> None:
@@ -70,8 +71,14 @@ class Lab(Closing):
 
     @property
     def role(self) -> str:
-        """The role of this client: "viewer", "controller" or "admin"."""
+        """The role of this client: "viewer", "teacher", "controller" or "admin"."""
         return str(c.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()
+
+    @property
+    def membership(self) -> Membership | None:
+        """The class, the name and the world of a member: see `evod.join`. None if this client is none."""
+        membership: Membership | None = result(self.welcome.membership) if self.welcome.HasField("membership") else None
+        return membership
 
     async def request(self, **request: Any) -> c.Response:
         """Sends any request of the protocol and returns the response.
@@ -544,6 +551,18 @@ class World(ParameterAttributes, WorldQueries):
         list. By default the list stays."""
         listed = None if free_genes is None else plans.gene_list(free_genes)
         return await self._command("reset_world", seed=seed, free_genes=listed)
+
+    async def note(self, text: str, kind: str = "note") -> WorldInfo:
+        """Writes a note into the journal of the run; it changes nothing in the world. `notes` returns it.
+
+        Parameters
+        ----------
+        text
+            1 to 4,096 bytes of UTF-8.
+        kind
+            1 to 32 characters of a-z, 0-9 and "_": "prediction".
+        """
+        return await self._command("add_note", kind=kind, text=text)
 
     async def release_lease(self) -> WorldInfo:
         """Ends the lease of the last `run_until_tick` or `step`, so that the world resumes if it was running before."""

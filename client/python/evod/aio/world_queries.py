@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from evod import plans, plotting, tables
+from evod import class_plans, plans, plotting, tables
 from evod.aio.awaitable import opens_stream
 from evod.aio.link import Link
 from evod.aio.streams import Events, Snapshots
+from evod.class_plans import Note
 from evod.conversion import result
 from evod.errors import FailedPrecondition
 from evod.generations import History, Population, Solution
@@ -259,7 +260,7 @@ class WorldQueries:
         Parameters
         ----------
         table
-            "generations", "organisms", "lineage", "population" or "events".
+            "generations", "organisms", "lineage", "population", "events" or "notes".
         format
             "csv" or "jsonl".
         generation
@@ -276,6 +277,30 @@ class WorldQueries:
         has_genes = table in ("organisms", "population")
         choices = (await self._link.perform(plans.gene_names(self.name, None))).choices if has_genes else ()
         return tables.read_csv(text, choices)
+
+    async def notes(self) -> tuple[Note, ...]:
+        """Returns the notes of the run in the order in which they were added: see `World.note`."""
+        return await self._link.perform(class_plans.notes(self.name))
+
+    async def observe(self, expression: str) -> float | None:
+        """Computes a number from the statistics of the run: ``world.observe("mean(fitness_mean, 1, 10)")``.
+
+        Parameters
+        ----------
+        expression
+            In the language of docs/LESSONS.md, at most 256 bytes.
+
+        Returns
+        -------
+        float or None
+            In the unit of the statistic. None: the run has no such value yet, for example too few generations.
+
+        Raises
+        ------
+        InvalidArgument
+            The expression is not one of the language.
+        """
+        return await self._link.perform(class_plans.observe(self.name, expression))
 
     # ---- plots ----------------------------------------------------------------------------------------------------
 
