@@ -14,6 +14,9 @@ function later(name: string, title: string, make: (loaded: Later, context: Panel
   return (context) => new LazyPanel(name, title, async () => make(await import("./loaded_later"), context));
 }
 
+/** The panel of those who may have classes. */
+export const class_panel = later("class", texts.class, ({ClassPanel}, context) => new ClassPanel(context));
+
 export const panels: ((context: PanelContext) => Panel)[] = [
   later("worlds", texts.worlds, ({WorldsPanel}, context) => new WorldsPanel(context)),
   later("run", texts.run, ({RunPanel}, context) => new RunPanel(context)),

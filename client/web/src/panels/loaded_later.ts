@@ -1,5 +1,8 @@
 // The panels that need most code, the dialogs, and evolution. They are a file of their own, panels.js, which the page
 // loads when one of them is first shown.
+export {JoinForm} from "../class/join_form";
+export {ClassPanel} from "../class/panel";
+export {ClassWall} from "../class/wall";
 export {Evolution} from "./evolution";
 export {genes_of_best} from "./best_genes";
 export {FamilyPanel} from "./family";

@@ -9,6 +9,7 @@ export const panels_texts = {
   plots: "Plots",
   physics: "Physics",
   freezer: "Freezer",
+  class: "Class",
   loading: "Loading …",
   not_loaded: (why: string) => `The panel cannot be loaded: ${why}.`,
 };

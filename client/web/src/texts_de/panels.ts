@@ -11,6 +11,7 @@ export const panels_texts: typeof english.panels_texts = {
   plots: "Diagramme",
   physics: "Physik",
   freezer: "Gefrierfach",
+  class: "Klasse",
   loading: "Wird geladen …",
   not_loaded: (why) => `Der Bereich kann nicht geladen werden: ${why}.`,
 };
