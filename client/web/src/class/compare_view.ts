@@ -40,7 +40,7 @@ export class CompareView {
   constructor(context: ForAllContext, open: (world: string) => void) {
     this.#context = context;
     this.#open = open;
-    const headings = texts.group_headings.map((text) => h("th", {scope: "col"}, text));
+    const headings = texts.group_headings.map((text, i) => h("th", {scope: "col", class: i > 0 ? "number" : null}, text));
     this.#group_table =
       h("table", {class: "table", "aria-label": texts.groups}, h("thead", {}, h("tr", {}, ...headings)), this.#groups);
     this.element =
@@ -97,7 +97,7 @@ export class CompareView {
     this.#table.hidden = names.length === 0;
     const head = ["", ...names.map(label), texts.best];
     this.#table.replaceChildren(
-      h("thead", {}, h("tr", {}, ...head.map((text) => h("th", {scope: "col"}, text)))),
+      h("thead", {}, h("tr", {}, ...head.map((text, i) => h("th", {scope: "col", class: i > 0 ? "number" : null}, text)))),
       h("tbody", {}, ...compared.map(({name, world, values, standing}) => {
         const open = h("button", {type: "button", class: "link", onclick: () => this.#open(world)}, name);
         const cells = names.map((parameter) => h("td", {class: "number"}, value_text(values.get(parameter) ?? {})));

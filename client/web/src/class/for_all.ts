@@ -12,6 +12,7 @@ import type {Server} from "../world/server";
 
 import type {ClassModel} from "./class_model";
 
+const narrow = "(max-width: 900px)"; // as in class.css
 const speeds = ["0.25", "0.5", "1", "2", "5", "10", "20", "max"];
 
 export interface ForAllContext {
@@ -51,8 +52,8 @@ export class ForAll {
         }
       },
       this.#parameter, this.#value, h("button", {type: "submit", class: "button"}, texts.set));
-    this.element = h(
-      "div", {class: "wall-for-all"},
+    const controls = h(
+      "div", {},
       row(
         button(texts.run, () => void this.#send({run: {}}, texts.run_done)),
         button(texts.pause, () => void this.#send({pause: {}}, texts.pause_done)), this.#speed),
@@ -65,6 +66,8 @@ export class ForAll {
       },
         this.#generations, h("button", {type: "submit", class: "button"}, texts.run_generations)),
       set, this.#reset, this.#confirm.element);
+    const is_narrow = matchMedia(narrow).matches;
+    this.element = h("details", {class: "wall-for-all", open: !is_narrow}, h("summary", {}, texts.title), controls);
     set_options(
       this.#speed,
       [{value: "", text: texts.speed}, ...speeds.map((speed) => ({value: speed, text: speed_text(speed_of(speed))}))], "");

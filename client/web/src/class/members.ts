@@ -73,11 +73,11 @@ export class Members {
     return h(
       "tr", {"data-removed": removed}, h("th", {scope: "row"}, name), h("td", {class: "class-world"}, world),
       h("td", {"data-state": removed ? "removed" : sessions > 0 ? "connected" : "away"}, state),
-      h("td", {class: "class-acts"},
+      h("td", {}, h("div", {class: "class-acts"},
         removed ? act(texts.readmit, "removed", () => void this.#change({number, removed: false})) :
                   act(texts.remove, "removed", () => void this.#change({number, removed: true})),
         act(texts.rename, "rename", (opener) => this.#ask_name(member, opener)),
-        removed ? null : act(texts.new_code, "code", () => void this.#change({number, new_personal_code: true}))));
+        removed ? null : act(texts.new_code, "code", () => void this.#change({number, new_personal_code: true})))));
   }
 
   #ask_name(member: ClassMember, opener: HTMLElement): void {

@@ -3,6 +3,7 @@
 import type {Look, WallTile} from "../core/messages";
 import {wall_texts as texts} from "../texts/class";
 import {fitness_text} from "../texts/numbers";
+import type {Size} from "../render/camera";
 import {observe_size} from "../widgets/canvas_size";
 import {set_attribute} from "../widgets/controls";
 import {h, set_text, svg} from "../widgets/dom";
@@ -12,6 +13,9 @@ import type {Student} from "./class_model";
 import {type Order, sort_by} from "./standing";
 
 const sorted_ms = 3000; // least time between two changes of the order, so that a tile can be hit
+const gap_pixels = 8, tile_pixels_min = 104; // CSS pixels, as in class.css
+const text_pixels = 72, island_aspect = 0.7; // what a tile contains besides its island, whose height follows from the width
+const row_pixels_min = 112, row_pixels_scrolled = 150;
 const curve_points = 60, curve_width = 100, curve_height = 24;
 
 interface Tile {
@@ -37,6 +41,7 @@ export class WallTiles {
   #focused = ""; // the world whose tile Tab reaches
   #sorted_ms = -Infinity;
   #sorted = "";
+  #size: Size = {width: 1, height: 1}; // of the canvas
   #sent = "";
   #request = 0;
 
@@ -51,7 +56,8 @@ export class WallTiles {
     this.#end_size = observe_size(this.#canvas, (size, pixel_ratio) => {
       server.post({kind: "wall_size", ...size, pixel_ratio});
       this.#sent = "";
-      this.place();
+      this.#size = size;
+      this.#lay_out();
     });
     if (new OffscreenCanvas(1, 1).getContext("webgl2") !== null) {
       const canvas = this.#canvas.transferControlToOffscreen();
@@ -81,6 +87,14 @@ export class WallTiles {
       this.#sort(students);
     }
     students.forEach((student) => this.#write(student, is_frozen));
+    this.#lay_out();
+  }
+
+  /** Chooses so many columns that all tiles are in view, if they are not too small then. */
+  #lay_out(): void {
+    const {width, height} = this.#size, {columns, row_pixels} = grid_of({width, height}, this.#tiles.size);
+    this.#grid.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
+    this.#grid.style.gridAutoRows = `${row_pixels}px`;
     this.place();
   }
 
@@ -203,6 +217,22 @@ export class WallTiles {
       this.focus(world);
     }
   }
+}
+
+/** The columns and the height of the rows with which all tiles are in view and as large as possible; if they would be
+ *  too small then, the grid scrolls. */
+export function grid_of({width, height}: Size, count: number): {columns: number; row_pixels: number} {
+  const columns_max = Math.max(1, Math.floor((width - gap_pixels) / (tile_pixels_min + gap_pixels)));
+  const row_of = (columns: number): number => {
+    const tile = (width - gap_pixels) / columns - gap_pixels, rows = Math.ceil(count / columns);
+    return Math.min((height - gap_pixels) / rows - gap_pixels, tile * island_aspect + text_pixels);
+  };
+  let best = columns_max;
+  for (let columns = columns_max; columns >= 1; --columns) {
+    best = row_of(columns) >= row_of(best) ? columns : best;
+  }
+  const row = Math.floor(row_of(best));
+  return row >= row_pixels_min ? {columns: best, row_pixels: row} : {columns: columns_max, row_pixels: row_pixels_scrolled};
 }
 
 /** A small curve without axes, in curve_points points at most. */

@@ -68,6 +68,7 @@ export const wall_texts = {
 };
 
 export const for_all_texts = {
+  title: "All worlds",
   freeze: "❄ Freeze",
   go_on: "❄ Go on",
   freeze_help: "Stops all worlds at once, or lets them go on (F)",

@@ -67,6 +67,7 @@ export const wall_texts: typeof english.wall_texts = {
 };
 
 export const for_all_texts: typeof english.for_all_texts = {
+  title: "Alle Welten",
   freeze: "❄ Anhalten",
   go_on: "❄ Weiter",
   freeze_help: "Hält alle Welten zugleich an oder lässt sie weiterlaufen (F)",
