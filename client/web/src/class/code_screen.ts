@@ -26,10 +26,12 @@ export class CodeScreen {
     this.#context = context;
     this.#lock = button("", () => void this.#update({open: this.#code_now === ""}));
     const renew = button(texts.new_code, () => void this.#update({open: true, new_code: true}));
-    const how = h("div", {class: "class-code-how"}, h("p", {}, texts.open), this.#link, h("p", {}, texts.type), this.#code);
+    const how =
+      h("div", {class: "class-code-how"}, h("p", {}, texts.open), this.#link, h("p", {}, texts.type), this.#code);
     this.#dialog.body.append(
       h("div", {class: "class-code-main"}, this.#qr, how),
-      h("div", {class: "row class-code-foot"}, this.#state, h("span", {class: "grow"}), this.#lock, renew), this.#guessed);
+      h("div", {class: "row class-code-foot"}, this.#state, h("span", {class: "grow"}), this.#lock, renew),
+      this.#guessed);
     this.#timer = setInterval(() => this.#dialog.is_open && this.refresh(), second_ms) as unknown as number;
   }
 

@@ -64,8 +64,8 @@ export function row_of(
     return String(real ?? count ?? flag ?? choice ?? value_text({}));
   };
   return [
-    plain(name), world, info?.run_id ?? "", String(info?.generation ?? ""), number(standing.best), number(standing.mean),
-    changed.map((parameter) => `${parameter}=${text(parameter)}`).join(" "), notes
+    plain(name), world, info?.run_id ?? "", String(info?.generation ?? ""), number(standing.best),
+    number(standing.mean), changed.map((parameter) => `${parameter}=${text(parameter)}`).join(" "), notes
   ];
 }
 
@@ -84,7 +84,8 @@ async function note_count(server: Server, world: string): Promise<number> {
   return text.split("\n").filter((line) => line.trim() !== "").length;
 }
 
-async function exported(server: Server, world: string, table: "RUN_TABLE_FILE"|"RUN_TABLE_NOTES"): Promise<Uint8Array[]> {
+async function exported(
+  server: Server, world: string, table: "RUN_TABLE_FILE"|"RUN_TABLE_NOTES"): Promise<Uint8Array[]> {
   const parts: Uint8Array[] = [];
   const format = table === "RUN_TABLE_NOTES" ? {format: "TEXT_FORMAT_JSON_LINES" as const} : {};
   let part = await server.request("export_run", {world, table, ...format});

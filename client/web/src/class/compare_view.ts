@@ -40,12 +40,20 @@ export class CompareView {
   constructor(context: ForAllContext, open: (world: string) => void) {
     this.#context = context;
     this.#open = open;
-    const headings = texts.group_headings.map((text, i) => h("th", {scope: "col", class: i > 0 ? "number" : null}, text));
+    const headings =
+      texts.group_headings.map((text, i) => h("th", {scope: "col", class: i > 0 ? "number" : null}, text));
     this.#group_table =
       h("table", {class: "table", "aria-label": texts.groups}, h("thead", {}, h("tr", {}, ...headings)), this.#groups);
     this.element =
-      h("div", {class: "class-compare"}, row(h("label", {for: "class-by"}, texts.group_by), this.#by), this.#plot.element,
-        this.#group_table, h("h3", {}, texts.table), this.#none, h("div", {class: "class-table"}, this.#table), hint(texts.help));
+      h("div", {class: "class-compare"},
+        row(
+          h("label",
+            {for: "class-by"
+            },
+            texts.group_by),
+          this.#by),
+        this.#plot.element, this.#group_table, h("h3", {}, texts.table), this.#none,
+        h("div", {class: "class-table"}, this.#table), hint(texts.help));
   }
 
   close(): void {
@@ -97,11 +105,13 @@ export class CompareView {
     this.#table.hidden = names.length === 0;
     const head = ["", ...names.map(label), texts.best];
     this.#table.replaceChildren(
-      h("thead", {}, h("tr", {}, ...head.map((text, i) => h("th", {scope: "col", class: i > 0 ? "number" : null}, text)))),
+      h("thead", {},
+        h("tr", {}, ...head.map((text, i) => h("th", {scope: "col", class: i > 0 ? "number" : null}, text)))),
       h("tbody", {}, ...compared.map(({name, world, values, standing}) => {
         const open = h("button", {type: "button", class: "link", onclick: () => this.#open(world)}, name);
         const cells = names.map((parameter) => h("td", {class: "number"}, value_text(values.get(parameter) ?? {})));
-        return h("tr", {}, h("th", {scope: "row"}, open), ...cells, h("td", {class: "number"}, fitness_of(standing.best)));
+        return h(
+          "tr", {}, h("th", {scope: "row"}, open), ...cells, h("td", {class: "number"}, fitness_of(standing.best)));
       })));
   }
 
@@ -113,7 +123,15 @@ export class CompareView {
     const lines = students.map((student, i): Series => {
       const {x, y} = curve_of(student), group = group_of(student);
       const colour = colours[(group < 0 ? i : group) % colours.length]!;
-      return {kind: "line", name: student.name, colour, x: [...x], y: [...y], in_legend: group < 0, thickness: line_pixels};
+      return {
+        kind: "line",
+        name: student.name,
+        colour,
+        x: [...x],
+        y: [...y],
+        in_legend: group < 0,
+        thickness: line_pixels
+      };
     });
     const medians = groups.map(({value, members}, i): Series => {
       const {x, y} = median_of(members.map(curve_of)), colour = colours[i % colours.length]!;
@@ -132,16 +150,14 @@ export class CompareView {
     this.#groups.replaceChildren(...groups.map(({value, members}) => {
       const bests = members.map(({standing}) => standing.best).filter((best) => Number.isFinite(best));
       const cells = [String(members.length), fitness_of(bests.length > 0 ? median(bests) : NaN)];
-      return h("tr", {}, h("th", {scope: "row"}, value_text(value)), ...cells.map((text) => h("td", {class: "number"}, text)));
+      return h(
+        "tr", {}, h("th", {scope: "row"}, value_text(value)), ...cells.map((text) => h("td", {class: "number"}, text)));
     }));
   }
 }
 
 function curve_of({history}: Student): Curve {
-  return {
-    x: history?.table.column(null, "generation") ?? [],
-    y: history?.table.column(null, "fitness_best") ?? []
-  };
+  return {x: history?.table.column(null, "generation") ?? [], y: history?.table.column(null, "fitness_best") ?? []};
 }
 
 function fitness_of(value: number): string {

@@ -27,8 +27,8 @@ export class ForAll {
   readonly freeze: HTMLButtonElement;
   readonly #context: ForAllContext;
   readonly #speed = h("select", {class: "field", "aria-label": texts.speed, onchange: () => this.#set_speed()});
-  readonly #generations = h(
-    "input", {class: "field wall-number", inputmode: "numeric", value: "10", "aria-label": texts.generations});
+  readonly #generations =
+    h("input", {class: "field wall-number", inputmode: "numeric", value: "10", "aria-label": texts.generations});
   readonly #parameter =
     h("select", {class: "field grow", "aria-label": texts.parameter, onchange: () => this.#show_value()});
   readonly #value = h("span", {class: "wall-value"});
@@ -43,34 +43,35 @@ export class ForAll {
       this.#confirm.close();
       void this.#send({reset_world: {}}, texts.reset_done);
     }, () => this.#reset);
-    const set = h(
-      "form", {
+    const set =
+      h("form", {
         class: "row wall-set",
         onsubmit: (event: Event) => {
           event.preventDefault();
           this.#set_parameter();
         }
       },
-      this.#parameter, this.#value, h("button", {type: "submit", class: "button"}, texts.set));
-    const controls = h(
-      "div", {},
-      row(
-        button(texts.run, () => void this.#send({run: {}}, texts.run_done)),
-        button(texts.pause, () => void this.#send({pause: {}}, texts.pause_done)), this.#speed),
-      h("form", {
-        class: "row",
-        onsubmit: (event: Event) => {
-          event.preventDefault();
-          this.#run_generations();
-        }
-      },
-        this.#generations, h("button", {type: "submit", class: "button"}, texts.run_generations)),
-      set, this.#reset, this.#confirm.element);
+        this.#parameter, this.#value, h("button", {type: "submit", class: "button"}, texts.set));
+    const controls =
+      h("div", {},
+        row(
+          button(texts.run, () => void this.#send({run: {}}, texts.run_done)),
+          button(texts.pause, () => void this.#send({pause: {}}, texts.pause_done)), this.#speed),
+        h("form", {
+          class: "row",
+          onsubmit: (event: Event) => {
+            event.preventDefault();
+            this.#run_generations();
+          }
+        },
+          this.#generations, h("button", {type: "submit", class: "button"}, texts.run_generations)),
+        set, this.#reset, this.#confirm.element);
     const is_narrow = matchMedia(narrow).matches;
     this.element = h("details", {class: "wall-for-all", open: !is_narrow}, h("summary", {}, texts.title), controls);
     set_options(
       this.#speed,
-      [{value: "", text: texts.speed}, ...speeds.map((speed) => ({value: speed, text: speed_text(speed_of(speed))}))], "");
+      [{value: "", text: texts.speed}, ...speeds.map((speed) => ({value: speed, text: speed_text(speed_of(speed))}))],
+      "");
     this.#list_parameters();
     this.refresh();
   }
@@ -97,8 +98,7 @@ export class ForAll {
       return;
     }
     this.#parameter.replaceChildren(
-      h("option", {value: ""}, texts.parameter),
-      ...grouped(parameters).map(({title, members}) => {
+      h("option", {value: ""}, texts.parameter), ...grouped(parameters).map(({title, members}) => {
         const options = members.map((i) => h("option", {value: String(i)}, label_of(parameters[i]!)));
         return h("optgroup", {label: title}, ...options);
       }));
@@ -114,14 +114,15 @@ export class ForAll {
     const name = texts.value_of(label_of(about));
     if (is_number(about)) {
       const {min = 0, max = 0} = about;
-      this.#value.replaceChildren(
-        h("input", {class: "field wall-number", inputmode: "decimal", "aria-label": name, title: texts.range(min, max)}));
+      this.#value.replaceChildren(h(
+        "input", {class: "field wall-number", inputmode: "decimal", "aria-label": name, title: texts.range(min, max)}));
     } else {
       const choices = about.kind === "PARAMETER_KIND_FLAG" ?
         [["true", texts.on], ["false", texts.off]] :
         (about.choices ?? []).map((choice) => [choice, label_of_choice(choice)]);
-      this.#value.replaceChildren(h(
-        "select", {class: "field", "aria-label": name}, ...choices.map(([value, text]) => h("option", {value}, text!))));
+      this.#value.replaceChildren(
+        h("select", {class: "field", "aria-label": name},
+          ...choices.map(([value, text]) => h("option", {value}, text!))));
     }
   }
 
@@ -131,13 +132,13 @@ export class ForAll {
       this.#context.notify(texts.choose_parameter);
       return;
     }
-    const text = (field as HTMLInputElement|HTMLSelectElement).value;
+    const text = (field as HTMLInputElement | HTMLSelectElement).value;
     const number = is_number(about) ? typed_number(about, text) : null;
     if (is_number(about) && number === null) {
       this.#context.notify(texts.no_number(text));
       return;
     }
-    const value = number !== null                ? value_of(about, number) :
+    const value = number !== null          ? value_of(about, number) :
       about.kind === "PARAMETER_KIND_FLAG" ? {flag: text === "true"} :
                                              {choice: text};
     void this.#send({set_parameters: {parameters: [{name: about.name ?? "", value}]}}, texts.set_done(label_of(about)));

@@ -23,18 +23,17 @@ export class JoinForm {
     maxlength: 20,
     oninput: () => this.#refresh()
   });
-  readonly #name = h(
-    "input",
-    {class: "field", id: "join-name", autocomplete: "off", spellcheck: "false", maxlength: name_characters_max});
+  readonly #name =
+    h("input",
+      {class: "field", id: "join-name", autocomplete: "off", spellcheck: "false", maxlength: name_characters_max});
   readonly #name_part: HTMLElement;
   readonly #problem = h("p", {class: "error", role: "alert"});
 
   /** join: connects as a member of a class. */
   constructor(join: (join: Join) => void) {
     void class_style();
-    this.#name_part =
-      h("div", {class: "join-part"}, h("label", {for: "join-name"}, texts.name), this.#name,
-        h("p", {class: "hint"}, texts.name_help));
+    this.#name_part = h("div", {class: "join-part"}, h("label", {for: "join-name"
+                        }, texts.name), this.#name, h("p", {class: "hint"}, texts.name_help));
     const submit = (event: Event): void => {
       event.preventDefault();
       const code = letters_of(this.#code.value);
@@ -47,8 +46,12 @@ export class JoinForm {
     };
     this.element =
       h("form", {class: "join", onsubmit: submit}, h("h2", {}, texts.title),
-        h("div", {class: "join-part"}, h("label", {for: "join-code"}, texts.code), this.#code,
-          h("p", {class: "hint"}, texts.code_help)),
+        h("div", {class: "join-part"},
+          h("label",
+            {for: "join-code"
+            },
+            texts.code),
+          this.#code, h("p", {class: "hint"}, texts.code_help)),
         this.#name_part, this.#problem, h("button", {type: "submit", class: "button button-primary"}, texts.join));
   }
 

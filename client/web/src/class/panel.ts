@@ -35,14 +35,14 @@ export class ClassPanel implements Panel {
   readonly #list = h("ul", {class: "class-list"});
   readonly #none = h("p", {class: "hint"});
   readonly #about = h("p", {class: "hint"});
-  readonly #name = h("input", {class: "field grow", id: "class-name", maxlength: 24, spellcheck: "false", autocomplete: "off"});
+  readonly #name =
+    h("input", {class: "field grow", id: "class-name", maxlength: 24, spellcheck: "false", autocomplete: "off"});
   readonly #population = h("select", {class: "field grow", id: "class-population"});
-  readonly #seeds = h(
-    "select", {class: "field grow", id: "class-seeds"}, h("option", {value: "CLASS_SEEDS_SAME"}, texts.seeds_same),
-    h("option", {value: "CLASS_SEEDS_OWN"}, texts.seeds_own));
-  readonly #worlds = h(
-    "input",
-    {class: "field wall-number", id: "class-worlds", type: "number", min: 1, max: worlds_max, value: "3"});
+  readonly #seeds =
+    h("select", {class: "field grow", id: "class-seeds"}, h("option", {value: "CLASS_SEEDS_SAME"}, texts.seeds_same),
+      h("option", {value: "CLASS_SEEDS_OWN"}, texts.seeds_own));
+  readonly #worlds =
+    h("input", {class: "field wall-number", id: "class-worlds", type: "number", min: 1, max: worlds_max, value: "3"});
   readonly #lesson = h("input", {class: "field grow", id: "class-lesson", spellcheck: "false", autocomplete: "off"});
   readonly #range_list = h("div", {class: "class-ranges"});
   readonly #error = h("p", {class: "error", role: "alert"});
@@ -58,14 +58,15 @@ export class ClassPanel implements Panel {
       void this.#send();
     };
     const field = (text: string, control: HTMLElement): HTMLElement[] => [labelled(text, control), control];
-    this.element = h(
-      "div", {class: "panel panel-class"}, this.#list, this.#none,
-      h("form", {class: "panel", onsubmit: submit}, h("h3", {}, texts.new_class), this.#about,
-        h("div", {class: "labelled"}, ...field(texts.name, this.#name), ...field(texts.population, this.#population),
-          ...field(texts.seeds, this.#seeds), ...field(texts.worlds, this.#worlds), ...field(texts.lesson, this.#lesson)),
-        h("details", {}, h("summary", {}, texts.ranges), hint(texts.ranges_help), this.#range_list,
-          row(button(texts.add_range, () => this.#add_range()))),
-        this.#error, row(this.#create)));
+    this.element =
+      h("div", {class: "panel panel-class"}, this.#list, this.#none,
+        h("form", {class: "panel", onsubmit: submit}, h("h3", {}, texts.new_class), this.#about,
+          h("div", {class: "labelled"}, ...field(texts.name, this.#name), ...field(texts.population, this.#population),
+            ...field(texts.seeds, this.#seeds), ...field(texts.worlds, this.#worlds),
+            ...field(texts.lesson, this.#lesson)),
+          h("details", {}, h("summary", {}, texts.ranges), hint(texts.ranges_help), this.#range_list,
+            row(button(texts.add_range, () => this.#add_range()))),
+          this.#error, row(this.#create)));
     context.server.events.listen((event) => {
       if (event.class_changed && !this.element.hidden) {
         void this.#read();
@@ -95,10 +96,12 @@ export class ClassPanel implements Panel {
     set_text(this.#none, this.#classes === null ? "" : classes.length === 0 ? texts.none : "");
     this.#list.replaceChildren(...classes.map((one) => {
       const {name = "", code = "", members = [], frozen = false, teacher = ""} = one;
-      const present = members.filter(({removed}) => !removed), here = present.filter(({sessions = 0}) => sessions > 0).length;
+      const present = members.filter(({removed}) => !removed),
+            here = present.filter(({sessions = 0}) => sessions > 0).length;
       const open = button(texts.open(name), () => this.#context.open_class(name), {class: "button button-primary"});
       const facts = [
-        texts.members(here, present.length), code === "" ? texts.closed : texts.code(spaced(code)), frozen ? texts.frozen : "",
+        texts.members(here, present.length), code === "" ? texts.closed : texts.code(spaced(code)),
+        frozen ? texts.frozen : "",
         teacher && teacher !== this.#context.server.state.welcome?.user ? texts.teacher(teacher) : ""
       ];
       return h("li", {}, open, h("span", {class: "hint"}, facts.filter(Boolean).join(" · ")));
@@ -114,8 +117,8 @@ export class ClassPanel implements Panel {
     }
     const names = kept.map(({name}) => ({value: of_freezer + name, text: texts.kept(name)}));
     set_options(
-      this.#population,
-      [{value: of_seed, text: texts.from_seed}, {value: of_world, text: texts.from_world}, ...names], of_seed);
+      this.#population, [{value: of_seed, text: texts.from_seed}, {value: of_world, text: texts.from_world}, ...names],
+      of_seed);
   }
 
   // ---- ranges ----
@@ -146,10 +149,10 @@ export class ClassPanel implements Panel {
   /** null: a bound is not a number. */
   #quota(): QuotaRange[]|null {
     const ranges = this.#ranges.map(({parameter, min, max}) => ({
-      parameter: parameter.value,
-      min: typed_number({kind: "PARAMETER_KIND_REAL"}, min.value),
-      max: typed_number({kind: "PARAMETER_KIND_REAL"}, max.value)
-    }));
+                                      parameter: parameter.value,
+                                      min: typed_number({kind: "PARAMETER_KIND_REAL"}, min.value),
+                                      max: typed_number({kind: "PARAMETER_KIND_REAL"}, max.value)
+                                    }));
     return ranges.every(({min, max}) => min !== null && max !== null) ? ranges as QuotaRange[] : null;
   }
 
@@ -191,8 +194,8 @@ export class ClassPanel implements Panel {
     const text = experiment_json(await server.request("get_parameters", {world: world.shown}));
     const chosen = this.#population.value;
     const population = chosen === of_seed ? null :
-      chosen === of_world               ? await this.#population_of_world() :
-                                          await kept_organisms().population(chosen.slice(of_freezer.length));
+      chosen === of_world                 ? await this.#population_of_world() :
+                                            await kept_organisms().population(chosen.slice(of_freezer.length));
     const first = population === null ? {} : first_population(population, text, server.parameters);
     if (typeof first === "string") {
       throw new Error(first);
@@ -207,8 +210,8 @@ export class ClassPanel implements Panel {
 
   async #population_of_world(): Promise<Population> {
     const {server} = this.#context, world = this.#context.world(), islands = world.info?.island_count ?? 1;
-    const {population} =
-      await whole_population((fields) => server.request("get_population", fields), world.shown, islands, world.gene_names);
+    const {population} = await whole_population(
+      (fields) => server.request("get_population", fields), world.shown, islands, world.gene_names);
     return population;
   }
 }

@@ -24,8 +24,13 @@ export function path_of({size = 0, modules = new Uint8Array()}: QrCode): string 
 export function qr_image(code: QrCode, name: string): SVGElement {
   const side = (code.size ?? 0) + 2 * quiet;
   return svg(
-    "svg", {class: "qr", viewBox: `${-quiet} ${-quiet} ${side} ${side}`, role: "img", "aria-label": name,
-      "shape-rendering": "crispEdges"},
+    "svg", {
+      class: "qr",
+      viewBox: `${- quiet} ${- quiet} ${side} ${side}`,
+      role: "img",
+      "aria-label": name,
+      "shape-rendering": "crispEdges"
+    },
     svg("rect", {x: -quiet, y: -quiet, width: side, height: side, fill: "#ffffff"}),
     svg("path", {d: path_of(code), fill: "#000000"}));
 }

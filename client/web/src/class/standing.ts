@@ -32,10 +32,15 @@ export function standing_of(table: HistoryTable): Standing {
 }
 
 /** Sorts in place: by name; by fitness, the fittest first; or by need of help, the longest without improvement first. */
-export function sort_by<Of extends {name: string; standing: Standing}>(students: Of[], order: Order): Of[] {
+export function sort_by < Of extends {
+  name: string;
+  standing: Standing
+}
+> (students: Of[], order: Order): Of[] {
   const by_name = (one: Of, other: Of): number => one.name.localeCompare(other.name, undefined, {numeric: true});
-  const value = ({standing}: Of): number => order === "fitness" ? (Number.isFinite(standing.best) ? standing.best : -Infinity) :
-                                                                  standing.stuck;
+  const value = ({standing: {best, stuck}}: Of): number => order === "help" ? stuck :
+    Number.isFinite(best)                                                   ? best :
+                                                                              -Infinity;
   return students.sort((one, other) => {
     const [a, b] = order === "name" ? [0, 0] : [value(one), value(other)];
     return a === b ? by_name(one, other) : b - a;

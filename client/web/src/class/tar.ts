@@ -13,7 +13,8 @@ export interface ArchivedFile {
 export function tar_of(files: readonly ArchivedFile[], changed_s: number): Uint8Array[] {
   const parts = files.flatMap(
     ({name, content}) =>
-      [header_of(name, content.length, changed_s), content, new Uint8Array((block - (content.length % block)) % block)]);
+      [header_of(name, content.length, changed_s), content,
+       new Uint8Array((block - (content.length % block)) % block)]);
   return [...parts, new Uint8Array(2 * block)];
 }
 
@@ -32,7 +33,10 @@ function header_of(name: string, size: number, changed_s: number): Uint8Array {
   write(octal(changed_s, 11), 136);
   write(" ".repeat(8), 148); // the checksum counts as spaces
   write("0", 156); // a file
-  write("ustar\0" + "00", 257);
+  write(
+    "ustar\0" +
+      "00",
+    257);
   const sum = header.reduce((total, byte) => total + byte, 0);
   write(sum.toString(8).padStart(6, "0") + "\0 ", 148);
   return header;

@@ -1,5 +1,5 @@
-// WallTiles: the worlds of a class as tiles. Each tile is a button; the worker draws the islands of all tiles in view on
-// one canvas behind them.
+// WallTiles: the worlds of a class as tiles. Each tile is a button; the worker draws the islands of all tiles
+// in view on one canvas behind them.
 import type {Look, WallTile} from "../core/messages";
 import {wall_texts as texts} from "../texts/class";
 import {fitness_text} from "../texts/numbers";
@@ -14,7 +14,8 @@ import {type Order, sort_by} from "./standing";
 
 const sorted_ms = 3000; // least time between two changes of the order, so that a tile can be hit
 const gap_pixels = 8, tile_pixels_min = 104; // CSS pixels, as in class.css
-const text_pixels = 72, island_aspect = 0.7; // what a tile contains besides its island, whose height follows from the width
+const text_pixels = 72,
+      island_aspect = 0.7; // what a tile contains besides its island, whose height follows from the width
 const row_pixels_min = 112, row_pixels_scrolled = 150;
 const curve_points = 60, curve_width = 100, curve_height = 24;
 
@@ -104,7 +105,7 @@ export class WallTiles {
     tile?.button.focus();
   }
 
-  /** Tells the worker, with the next frame, which worlds are in view, and where. */
+  /** Sends the worlds in view and their places to the worker, with the next frame. */
   place(): void {
     this.#request ||= requestAnimationFrame(() => {
       this.#request = 0;
@@ -153,18 +154,18 @@ export class WallTiles {
     const island = h("span", {class: "wall-island"}), name = h("span", {class: "wall-name"});
     const facts = h("span", {class: "wall-facts"}), mark = h("span", {class: "wall-mark", "aria-hidden": "true"});
     const curve = svg("path", {class: "wall-curve-line"});
-    const picture = svg(
-      "svg",
-      {class: "wall-curve", viewBox: `0 0 ${curve_width} ${curve_height}`, preserveAspectRatio: "none", "aria-hidden": "true"},
+    const image = svg(
+      "svg", {
+        class: "wall-curve",
+        viewBox: `0 0 ${curve_width} ${curve_height}`,
+        preserveAspectRatio: "none",
+        "aria-hidden": "true"
+      },
       curve);
     const button =
-      h("button", {
-        type: "button",
-        class: "wall-tile",
-        onclick: () => this.#open(world),
-        onfocus: () => (this.#focused = world)
-      },
-        h("span", {class: "wall-head"}, mark, name), island, h("span", {class: "wall-foot"}, facts), picture);
+      h("button",
+        {type: "button", class: "wall-tile", onclick: () => this.#open(world), onfocus: () => (this.#focused = world)},
+        h("span", {class: "wall-head"}, mark, name), island, h("span", {class: "wall-foot"}, facts), image);
     return {button, island, name, facts, mark, curve, curve_key: ""};
   }
 
@@ -205,7 +206,14 @@ export class WallTiles {
     const worlds = [...this.#tiles.keys()], at = worlds.indexOf(this.#focused);
     const tops = [...this.#tiles.values()].map(({button}) => button.offsetTop);
     const columns = tops.lastIndexOf(tops[0] ?? 0) + 1, last = worlds.length - 1;
-    const to = {ArrowLeft: at - 1, ArrowRight: at + 1, ArrowUp: at - columns, ArrowDown: at + columns, Home: 0, End: last}[event.key];
+    const to = {
+      ArrowLeft: at - 1,
+      ArrowRight: at + 1,
+      ArrowUp: at - columns,
+      ArrowDown: at + columns,
+      Home: 0,
+      End: last
+    }[event.key];
     if (to === undefined || event.ctrlKey || event.altKey || event.metaKey) {
       return;
     }
@@ -232,7 +240,8 @@ export function grid_of({width, height}: Size, count: number): {columns: number;
     best = row_of(columns) >= row_of(best) ? columns : best;
   }
   const row = Math.floor(row_of(best));
-  return row >= row_pixels_min ? {columns: best, row_pixels: row} : {columns: columns_max, row_pixels: row_pixels_scrolled};
+  return row >= row_pixels_min ? {columns: best, row_pixels: row} :
+                                 {columns: columns_max, row_pixels: row_pixels_scrolled};
 }
 
 /** A small curve without axes, in curve_points points at most. */
@@ -247,9 +256,11 @@ export function curve_path(y: readonly number[]): string {
   }
   const low = Math.min(...known), high = Math.max(...known), range = high > low ? high - low : 1;
   return points
-    .map((value, i) => Number.isFinite(value) ? `${i === 0 ? "M" : "L"}${(curve_width * i / (points.length - 1)).toFixed(1)} ${
-                                                  (1 + (curve_height - 2) * (1 - (value - low) / range)).toFixed(1)}` :
-                                                "")
+    .map(
+      (value, i) => Number.isFinite(value) ?
+        `${i === 0 ? "M" : "L"}${(curve_width * i / (points.length - 1)).toFixed(1)} ${
+          (1 + (curve_height - 2) * (1 - (value - low) / range)).toFixed(1)}` :
+        "")
     .join("")
     .replace(/^L/, "M");
 }

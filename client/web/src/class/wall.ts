@@ -41,8 +41,8 @@ export class ClassWall implements ForAllContext {
   readonly #live = h("p", {class: "visually-hidden", role: "status", "aria-live": "polite"});
   readonly #count = h("span", {class: "wall-count"});
   readonly #frozen = h("span", {class: "badge wall-frozen", hidden: true}, texts.frozen_badge);
-  readonly #order: HTMLSelectElement =
-    h("select", {class: "field", "aria-label": texts.order, onchange: () => this.#set_order(this.#order.value as Order)});
+  readonly #order: HTMLSelectElement = h(
+    "select", {class: "field", "aria-label": texts.order, onchange: () => this.#set_order(this.#order.value as Order)});
   readonly #views: {[view in View]: HTMLButtonElement};
   readonly #for_all: ForAll;
   readonly #tiles: WallTiles;
@@ -75,17 +75,18 @@ export class ClassWall implements ForAllContext {
     };
     this.#collect = button(texts.collect, () => void this.#do_collect());
     const code = button(texts.code, () => this.#code.open(), {class: "button button-primary"});
-    const back = button(texts.back, () => this.close(), {class: "button button-quiet wall-back", title: texts.back_help});
+    const back =
+      button(texts.back, () => this.close(), {class: "button button-quiet wall-back", title: texts.back_help});
     const sort = h("label", {class: "row wall-order"}, h("span", {}, texts.order), this.#order);
-    this.element = h(
-      "main", {class: "class-wall", "aria-label": texts.name(name)},
-      h("header", {class: "wall-bar"}, back, h("h1", {}, name), this.#count, this.#frozen, h("span", {class: "grow"}),
-        this.#for_all.freeze, code),
-      h("nav", {class: "wall-nav", "aria-label": texts.views}, ...Object.values(this.#views), this.#collect,
-        h("span", {class: "grow"}), sort),
-      h("div", {class: "wall-body"}, this.#for_all.element, this.#tiles.element, this.#empty, this.#members.element,
-        this.#compare.element),
-      this.#live, this.#notices.element);
+    this.element =
+      h("main", {class: "class-wall", "aria-label": texts.name(name)},
+        h("header", {class: "wall-bar"}, back, h("h1", {}, name), this.#count, this.#frozen, h("span", {class: "grow"}),
+          this.#for_all.freeze, code),
+        h("nav", {class: "wall-nav", "aria-label": texts.views}, ...Object.values(this.#views), this.#collect,
+          h("span", {class: "grow"}), sort),
+        h("div", {class: "wall-body"}, this.#for_all.element, this.#tiles.element, this.#empty, this.#members.element,
+          this.#compare.element),
+        this.#live, this.#notices.element);
     set_options(
       this.#order, (["name", "fitness", "help"] as const).map((value) => ({value, text: texts.orders[value]})), "name");
     const key = (event: KeyboardEvent): void => this.#key(event);
@@ -133,7 +134,10 @@ export class ClassWall implements ForAllContext {
     this.#empty.hidden = this.#view !== "worlds" || !is_empty;
     set_text(
       this.#empty,
-      model.problem ? model.problem : info === null ? texts.no_class(this.name) : is_empty ? texts.nobody : "");
+      model.problem   ? model.problem :
+        info === null ? texts.no_class(this.name) :
+        is_empty      ? texts.no_student :
+                        "");
     if (this.#view === "worlds") {
       this.#tiles.refresh(students, model.is_frozen);
     } else {
@@ -188,7 +192,8 @@ export class ClassWall implements ForAllContext {
   }
 
   #key(event: KeyboardEvent): void {
-    const is_typing = event.target instanceof Element && event.target.closest("input, textarea, select, dialog") !== null;
+    const is_typing =
+      event.target instanceof Element && event.target.closest("input, textarea, select, dialog") !== null;
     if (event.defaultPrevented || is_typing || event.ctrlKey || event.altKey || event.metaKey) {
       return;
     }
@@ -201,7 +206,7 @@ export class ClassWall implements ForAllContext {
     }
   }
 
-  /** Tells screen readers of freezing, and of members who have joined. */
+  /** Announces freezing, and members who have joined, to screen readers. */
   #announce(): void {
     const {model} = this, joined = new Set(model.members.filter((one) => one.joined).map(({name = ""}) => name));
     const said: string[] = [];
@@ -232,8 +237,9 @@ export class ClassWall implements ForAllContext {
         set_text(this.#collect, texts.collecting(done, students.length));
       });
       save_file(archive, `${this.name}.tar`);
-      this.notify(problems.length === 0 ? texts.collected(students.length) : texts.incomplete(problems), undefined, undefined,
-                  problems.length > 0);
+      this.notify(
+        problems.length === 0 ? texts.collected(students.length) : texts.incomplete(problems), undefined, undefined,
+        problems.length > 0);
     });
     this.#is_collecting = false;
     set_text(this.#collect, texts.collect);

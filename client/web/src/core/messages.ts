@@ -5,8 +5,7 @@
 //
 // protocol.ts describes the messages of the protocol.
 import {event_kinds} from "./protocol";
-import type {
-  Event, EventKinds, Join, One, Request, RequestKinds, RequestRules, Response, Welcome} from "./protocol";
+import type {Event, EventKinds, Join, One, Request, RequestKinds, RequestRules, Response, Welcome} from "./protocol";
 import type {Snapshot, SnapshotInfo} from "./snapshot";
 
 export type RequestKind = keyof RequestKinds;

@@ -88,7 +88,7 @@ export class App implements KeyTarget {
     this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
     const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, new Overview(this, this.evolution.element), 
+      this, server, new Overview(this, this.evolution.element),
       [...panels, ...(server.access.may_teach ? [class_panel] : [])].map((make) => make(this)),
       new Tools(this, () => this.panes.focused.pane.tool), [theme_button(), help, hide]);
     this.element =

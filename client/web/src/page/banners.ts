@@ -12,8 +12,8 @@ import type {LinkFollower} from "./link_follower";
 export function banners_of(
   server: Server, tokens: Tokens, link: LinkFollower, evolution: EvolutionButton, on_decline: () => void): Banner[] {
   return [
-    ...of_connection(server), ...of_class(server), ...of_token(server, tokens, on_decline), ...link.banners(), ...of_storage(server),
-    ...evolution.banners()
+    ...of_connection(server), ...of_class(server), ...of_token(server, tokens, on_decline), ...link.banners(),
+    ...of_storage(server), ...evolution.banners()
   ];
 }
 

@@ -66,7 +66,8 @@ export class ClassMode {
     const banners: Banner[] = [], join = this.#join, from = this.#from;
     if (join !== null) {
       const actions = [
-        {label: app_texts.join_class, act: () => this.#answer(join)}, {label: app_texts.stay, act: () => this.#answer(null)}
+        {label: app_texts.join_class, act: () => this.#answer(join)},
+        {label: app_texts.stay, act: () => this.#answer(null)}
       ];
       banners.push({name: "join", kind: "warn", text: app_texts.other_class, actions});
     }

@@ -85,7 +85,8 @@ async function run(): Promise<void> {
     }
   });
   addEventListener("hashchange", () => {
-    const followed = take_secret("token"), followed_code = take_secret("join"), token = followed === null ? null : tokens.follow(followed);
+    const followed = take_secret("token"), followed_code = take_secret("join"),
+          token = followed === null ? null : tokens.follow(followed);
     if (token !== null) {
       server.connect(token);
     }

@@ -136,8 +136,8 @@ export class PaneArea {
       this.#foot.lastElementChild!.remove();
     }
     texts.forEach((text, i) => set_text(this.#foot.children[i] ?? this.#foot.appendChild(h("span", {})), text));
-    const may_run = ["", access_texts.watching, access_texts.no_connection].includes(
-      server.access.why_not("run", world.shown));
+    const may_run =
+      ["", access_texts.watching, access_texts.no_connection].includes(server.access.why_not("run", world.shown));
     this.#start.hidden = world.is_replay || world.control.state !== "RUN_STATE_WAITING" || !may_run;
     const is_waiting = !snapshot && world.shown !== "" && !this.pane.tiles.is_on;
     set_text(this.#message, world.feed.problem || (is_waiting ? pane_texts.waiting : ""));

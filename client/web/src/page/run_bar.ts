@@ -4,8 +4,8 @@ import {run_bar_texts as texts} from "../texts/run_bar";
 import {speed_text} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {speed_max} from "../world/run_control";
 import {both_state, run_or_pause_both} from "../world/run_both";
+import {speed_max} from "../world/run_control";
 
 import type {ViewedWorld} from "../world/world";
 import type {PanelContext} from "../world/panel_context";

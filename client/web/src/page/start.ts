@@ -44,7 +44,8 @@ export class Start {
       h("button", {type: "button", class: "button button-primary", hidden: true, onclick: () => location.reload()},
         texts.try_again);
     this.element =
-      h("main", {class: "start"}, h("div", {class: "start-card"}, this.#title, this.#text, this.#form, this.#join, this.#again));
+      h("main", {class: "start"},
+        h("div", {class: "start-card"}, this.#title, this.#text, this.#form, this.#join, this.#again));
     this.say(texts.connecting);
   }
 
@@ -79,9 +80,9 @@ export class Start {
 
   async #shown_join_form(server: Server): Promise<JoinForm> {
     this.#join_form ??= import("../panels/loaded_later").then(({JoinForm: Loaded}) => new Loaded((join) => {
-      this.#asks = false;
-      server.connect("", join);
-    }));
+                                                                this.#asks = false;
+                                                                server.connect("", join);
+                                                              }));
     const form = await this.#join_form;
     this.#join.replaceChildren(form.element);
     this.#join.hidden = false;
@@ -93,7 +94,10 @@ export class Start {
     const form = await this.#shown_join_form(server);
     if (server.state.phase === "refused") {
       form.take_refusal(server.state, server.is_joining);
-      this.say(server.is_joining ? "" : form.sentence(server.state) || (is_known_member ? server.state.message : texts.token_required));
+      this.say(
+        server.is_joining ?
+          "" :
+          form.sentence(server.state) || (is_known_member ? server.state.message : texts.token_required));
     }
   }
 

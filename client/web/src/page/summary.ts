@@ -45,8 +45,7 @@ export class Summary {
       h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,
         ...head),
       this.#experiment, this.#warnings, this.#legend.element,
-      h("div", {class: "row part"}, this.#part, this.#part_text, this.#session),
-      this.#run_bar.element, tools.element);
+      h("div", {class: "row part"}, this.#part, this.#part_text, this.#session), this.#run_bar.element, tools.element);
   }
 
   refresh(): void {
@@ -63,8 +62,8 @@ export class Summary {
     this.#part.className = taking_part ? "button" : "button button-primary";
     set_text(this.#part, taking_part ? texts.only_watch : texts.take_part);
     const part_text = state.phase !== "open" ? texts.no_connection :
-      membership !== null                           ? texts.is_member(membership) :
-      !server.access.may_take_part                  ? texts.is_viewer :
+      membership !== null                    ? texts.is_member(membership) :
+      !server.access.may_take_part           ? texts.is_viewer :
       taking_part                            ? texts.takes_part :
                                                texts.watches(world.has_bodies);
     set_text(this.#part_text, part_text);

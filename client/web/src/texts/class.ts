@@ -53,14 +53,16 @@ export const wall_texts = {
   orders: {name: "by name", fitness: "by fitness", help: "by need of help"},
   tiles: "The worlds of the students",
   facts: (generation: number, best: string) => `gen ${generation} · ${best}`,
-  tile: (name: string, generation: number, best: string, state: readonly string[]) =>
-    [name, `generation ${generation}`, `best fitness ${best}`, ...state].join(", "),
+  tile:
+    (name: string, generation: number, best: string,
+     state: readonly string[]) => [name, `generation ${generation}`, `best fitness ${best}`, ...state].join(", "),
   away: "not connected",
   is_frozen: "frozen",
   no_world: "no world",
-  stuck: (generations: number) => `${generations === 1 ? "1 generation" : `${generations} generations`} without improvement`,
+  stuck: (generations: number) =>
+    `${generations === 1 ? "1 generation" : `${generations} generations`} without improvement`,
   no_class: (name: string) => `There is no class ${name}.`,
-  nobody: "No student has joined yet. “Code to join” shows how.",
+  no_student: "No student has joined yet. “Code to join” shows how.",
   no_world_of: (name: string) => `${name} has no world at the moment.`,
   said_frozen: "The class is frozen.",
   said_goes_on: "The class goes on.",
@@ -103,12 +105,13 @@ export const code_texts = {
   type: "or type this code there:",
   none: "closed",
   qr: (link: string) => `QR code of ${link}`,
-  state: (joined: number, minutes: number, is_open: boolean) => `${joined === 1 ? "1 student has" : `${joined} students have`} joined` +
+  state: (joined: number, minutes: number, is_open: boolean) =>
+    `${joined === 1 ? "1 student has" : `${joined} students have`} joined` +
     (is_open ? ` · the code ends in ${minutes} min` : ""),
   lock: "Lock",
   unlock: "Open the class",
   new_code: "New code",
-  guessed: "Many wrong codes arrive: somebody may be guessing. A new code or the lock helps.",
+  guessed: "Many wrong codes arrive, perhaps from a program that guesses. A new code or the lock helps.",
 };
 
 export const member_texts = {

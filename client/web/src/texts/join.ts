@@ -11,14 +11,14 @@ export const join_texts = {
 };
 
 /** By the reason of the server. */
-export const join_refusals: {readonly [reason: string]: string | undefined} = {
+export const join_refusals: {readonly [reason: string]: string|undefined} = {
   REASON_CODE_UNKNOWN: "No class has this code now. Check the letters, or ask your teacher for a new code.",
-  REASON_MEMBERS_MAX: "The class is full. Tell your teacher.",
+  REASON_MEMBERS_MAX: "The class is full: ask your teacher.",
   REASON_MEMBER_NAME_TAKEN: "Another student has this name already. Choose another one, or leave the field empty.",
   REASON_MEMBER_REMOVED: "Your teacher has removed you from the class. Your teacher can let you in again.",
   REASON_JOINS_TOO_FAST: "Too many codes are being tried at the moment. Wait a few seconds and try again.",
   REASON_SERVER_BUSY: "The server is busy at the moment. Wait a few seconds and try again.",
-  REASON_SESSIONS_MAX: "The server has too many visitors at the moment. Tell your teacher.",
-  REASON_WORLDS_MAX: "The server has no room for another world. Tell your teacher.",
+  REASON_SESSIONS_MAX: "The server has too many visitors at the moment: ask your teacher.",
+  REASON_WORLDS_MAX: "The server has no room for another world: ask your teacher.",
   REASON_FIELD_INVALID: "This name is not possible: use at most 24 letters, digits and spaces.",
 };

@@ -2,6 +2,7 @@
 export const panels_texts = {
   worlds: "Worlds",
   run: "Run",
+  parameters: "Parameters",
   view: "View",
   organism: "Organism",
   glass_box: "Glass box",

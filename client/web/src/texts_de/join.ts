@@ -16,8 +16,7 @@ export const join_refusals: typeof english.join_refusals = {
     "Diesen Code hat gerade keine Klasse. Prüfe die Buchstaben, oder bitte deine Lehrkraft um einen neuen Code.",
   REASON_MEMBERS_MAX: "Die Klasse ist voll. Sag es deiner Lehrkraft.",
   REASON_MEMBER_NAME_TAKEN: "Diesen Namen hat schon jemand. Wähle einen anderen, oder lass das Feld leer.",
-  REASON_MEMBER_REMOVED:
-    "Deine Lehrkraft hat dich aus der Klasse entfernt. Sie kann dich wieder hereinlassen.",
+  REASON_MEMBER_REMOVED: "Deine Lehrkraft hat dich aus der Klasse entfernt. Sie kann dich wieder hereinlassen.",
   REASON_JOINS_TOO_FAST: "Gerade werden zu viele Codes probiert. Warte ein paar Sekunden und versuche es noch einmal.",
   REASON_SERVER_BUSY: "Der Server ist gerade beschäftigt. Warte ein paar Sekunden und versuche es noch einmal.",
   REASON_SESSIONS_MAX: "Der Server hat gerade zu viele Besucher. Sag es deiner Lehrkraft.",

@@ -4,6 +4,7 @@ import type * as english from "../texts/panels";
 export const panels_texts: typeof english.panels_texts = {
   worlds: "Welten",
   run: "Lauf",
+  parameters: "Parameter",
   view: "Ansicht",
   organism: "Organismus",
   glass_box: "Glaskasten",

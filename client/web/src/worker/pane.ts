@@ -11,9 +11,9 @@ import type {ForWall} from "./wall";
 const report_ms = 50, drawing_report_ms = 200, tiles_report_ms = 300; // least time between two messages
 
 /** The messages of the page about one pane. */
-export type ForPane =
-  Exclude<ToWorker, {kind: "connect" | "request" | "events_taken" | "visible" | "ask_figures" | "close_pane" |
-  ForWall["kind"]}>;
+export type ForPane = Exclude<ToWorker, {
+  kind: "connect" | "request" | "events_taken" | "visible" | "ask_figures" | "close_pane" | ForWall["kind"]
+}>;
 
 export class WorkerPane {
   readonly feed: Feed;

@@ -85,18 +85,18 @@ export class Access {
       return why;
     }
     const changes = this.changes_others(kind);
-    return changes && !this.taking_part                                    ? access_texts.watching :
-      changes && of_world?.frozen && this.membership !== null              ? access_texts.frozen :
-      kind === "delete_world" && world === this.membership?.world          ? access_texts.first_world :
-                                                                             "";
+    return changes && !this.taking_part                           ? access_texts.watching :
+      changes && of_world?.frozen && this.membership !== null     ? access_texts.frozen :
+      kind === "delete_world" && world === this.membership?.world ? access_texts.first_world :
+                                                                    "";
   }
 
   #why_not_role(needed: Role): string {
     return this.roles.indexOf(this.role) >= this.roles.indexOf(needed) ? "" :
-      this.membership !== null                                        ? access_texts.own_worlds :
-      needed === "ROLE_ADMIN" && this.role === "ROLE_CONTROLLER"      ? access_texts.admin_only :
-      this.role === "ROLE_TEACHER"                                    ? access_texts.own_classes :
-                                                                        access_texts.read_only;
+      this.membership !== null                                         ? access_texts.own_worlds :
+      needed === "ROLE_ADMIN" && this.role === "ROLE_CONTROLLER"       ? access_texts.admin_only :
+      this.role === "ROLE_TEACHER"                                     ? access_texts.own_classes :
+                                                                         access_texts.read_only;
   }
 
   /** Whether the user owns the world, or is the teacher of its class. */

@@ -10,8 +10,7 @@ import {Worlds} from "./worlds";
 
 import type {ConnectionState, FromWorker, RequestKind, ToWorker} from "../core/messages";
 import type * as protocol from "../core/protocol";
-import type {
-  Answers, Event, ParameterDescription, RequestKinds, Response, Status, Storage} from "../core/protocol";
+import type {Answers, Event, ParameterDescription, RequestKinds, Response, Status, Storage} from "../core/protocol";
 
 /** A wrong field of a request. */
 export type Violation = Required<protocol.Violation>;
@@ -239,7 +238,6 @@ export class Server {
 }
 
 function refusal_of(status: Status): Refusal {
-  const violations =
-    (status.violations ?? []).map(({field = "", allowed = "", got = ""}) => ({field, allowed, got}));
+  const violations = (status.violations ?? []).map(({field = "", allowed = "", got = ""}) => ({field, allowed, got}));
   return new Refusal(refusal_text(status), status.code ?? "", status.reason ?? "", violations);
 }

@@ -36,7 +36,8 @@ export class Worlds {
   }
 
   #is_listed(world: WorldInfo): boolean {
-    const listed = this.#only_of === null || (world.owner ?? "") === this.#only_of || this.#replays.has(world.name ?? "");
+    const listed =
+      this.#only_of === null || (world.owner ?? "") === this.#only_of || this.#replays.has(world.name ?? "");
     this.#hidden[listed ? "delete" : "add"](world.name ?? "");
     return listed;
   }
@@ -74,10 +75,8 @@ export class Worlds {
     const replays = this.all.filter((world) => this.#replays.has(world.name));
     this.#hidden.clear();
     const listed = worlds.filter((world) => this.#is_listed(world));
-    this.all = [
-      ...listed.map(known_world),
-      ...replays.filter((replay) => !worlds.some((world) => world.name === replay.name))
-    ];
+    this.all =
+      [...listed.map(known_world), ...replays.filter((replay) => !worlds.some((world) => world.name === replay.name))];
     this.#sort();
     this.damaged = this.#only_of === null ? damaged.map((world) => ({name: "", ...world})) : [];
     this.are_known = true;
