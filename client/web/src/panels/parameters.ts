@@ -19,7 +19,7 @@ import {PlannedChanges} from "./planned_changes";
 
 export class ParametersPanel implements Panel {
   readonly name = "parameters";
-  readonly title = texts.title;
+  readonly title = panels_texts.parameters;
   readonly element: HTMLElement;
 
   readonly #context: PanelContext;
