@@ -46,6 +46,7 @@ export class ForAll {
     const set =
       h("form", {
         class: "row wall-set",
+        "aria-label": texts.set,
         onsubmit: (event: Event) => {
           event.preventDefault();
           this.#set_parameter();
@@ -59,6 +60,7 @@ export class ForAll {
           button(texts.pause, () => void this.#send({pause: {}}, texts.pause_done)), this.#speed),
         h("form", {
           class: "row",
+          "aria-label": texts.run_generations,
           onsubmit: (event: Event) => {
             event.preventDefault();
             this.#run_generations();

@@ -45,7 +45,7 @@ export class JoinForm {
       join({code, name: is_personal(code) ? "" : this.#name.value.trim()});
     };
     this.element =
-      h("form", {class: "join", onsubmit: submit}, h("h2", {}, texts.title),
+      h("form", {class: "join", "aria-label": texts.title, onsubmit: submit}, h("h2", {}, texts.title),
         h("div", {class: "join-part"},
           h("label",
             {for: "join-code"

@@ -33,6 +33,7 @@ export class Members {
     const add =
       h("form", {
         class: "class-add",
+        "aria-label": texts.add_title,
         onsubmit: (event: Event) => {
           event.preventDefault();
           void this.#add();

@@ -60,7 +60,8 @@ export class ClassPanel implements Panel {
     const field = (text: string, control: HTMLElement): HTMLElement[] => [labelled(text, control), control];
     this.element =
       h("div", {class: "panel panel-class"}, this.#list, this.#none,
-        h("form", {class: "panel", onsubmit: submit}, h("h3", {}, texts.new_class), this.#about,
+        h("form", {class: "panel", "aria-label": texts.new_class, onsubmit: submit}, h("h3", {}, texts.new_class),
+          this.#about,
           h("div", {class: "labelled"}, ...field(texts.name, this.#name), ...field(texts.population, this.#population),
             ...field(texts.seeds, this.#seeds), ...field(texts.worlds, this.#worlds),
             ...field(texts.lesson, this.#lesson)),
