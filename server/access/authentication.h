@@ -21,6 +21,7 @@ struct AuthenticatedUser {
     std::string name; // name of the token; empty: no token
     Role role = Role::Admin;
     Digest token{};
+    bool is_member = false; // a member of a class, whose token is not in the token file
 };
 
 class Authenticator {

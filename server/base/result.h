@@ -90,6 +90,15 @@ enum class Reason {
     LoginTooSoon = 89,
     AuthenticationUnavailable = 90,
     SessionsMax = 91,
+    ClassNotFound = 100,
+    ClassExists = 101,
+    MemberNotFound = 102,
+    MembersMax = 103,
+    ClassesMax = 104,
+    CodeUnknown = 105,
+    MemberNameTaken = 106,
+    MemberRemoved = 107,
+    JoinsTooFast = 108,
 };
 
 /// Returns the name of the code as users see it, for example "INVALID_ARGUMENT".

@@ -23,7 +23,11 @@ int back_up(const std::string& data, const std::string& folder) {
         return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
     };
     std::cout << folder << ": " << counted(backup->worlds, "world") << ", " << counted(backup->ended, "ended run")
-              << (backup->has_tokens ? " and the tokens" : "") << ", " << backup->bytes << " bytes\n";
+              << (backup->has_tokens && backup->has_classes ? ", the tokens and the classes"
+                  : backup->has_tokens                      ? " and the tokens"
+                  : backup->has_classes                     ? " and the classes"
+                                                            : "")
+              << ", " << backup->bytes << " bytes\n";
     return backup->failures.empty() ? 0 : exit_error;
 }
 

@@ -189,18 +189,24 @@ void Commands::handle(Session& session, const v1::Request& request) {
     }
 }
 
-void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> lease,
-                          const simulation::Ownership& ownership) {
+void Commands::handle_own(v1::Request request, std::optional<std::uint64_t> lease) {
     request.set_client_key(own_key_);
     request.set_request_id(++own_request_id_);
     auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     EVOD_ASSERT(command.has_value());
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;
-    } else if (auto* created = std::get_if<simulation::CreateWorld>(&*command)) {
-        created->ownership = ownership;
     }
     send(*std::move(command), request, bytes_of(request), nullptr);
+}
+
+bool Commands::create_own(v1::Request request, simulation::Ownership ownership) {
+    request.set_client_key(own_key_);
+    request.set_request_id(++own_request_id_);
+    auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
+    EVOD_ASSERT(command.has_value());
+    std::get<simulation::CreateWorld>(*command).ownership = std::move(ownership);
+    return send(*std::move(command), request, bytes_of(request), nullptr);
 }
 
 bool Commands::send(simulation::Command command, const v1::Request& request, std::string bytes, const Session* sender) {
@@ -306,7 +312,11 @@ void Commands::on_done(runtime::CommandDone done) {
 
 void Commands::on_refused(const runtime::CommandMail& mail, const base::Refusal& why, const SharedBytes& frame) {
     if (mail.session == 0) {
-        if (why.reason != base::Reason::NoLease) {
+        // The world of a member of a class is there already each time the member connects again.
+        const auto* create = std::get_if<simulation::CreateWorld>(&mail.command);
+        const bool is_there = create != nullptr && !create->ownership.class_name.empty() &&
+                              why.reason == base::Reason::WorldExists;
+        if (why.reason != base::Reason::NoLease && !is_there) {
             log::error("the server's own command {} is refused: {}", mail.request_name, to_text(why));
         }
         return;

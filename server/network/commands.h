@@ -31,10 +31,11 @@ class Commands {
     /// Sends a command on behalf of the server itself. If the command is refused, the refusal is logged. If the mailbox
     /// is full, the command is dropped.
     ///
-    /// lease      for ReleaseLease: the number of the lease.
-    /// ownership  for CreateWorld: to whom the world belongs.
-    void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {},
-                    const simulation::Ownership& ownership = {});
+    /// lease  for ReleaseLease: the number of the lease.
+    void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
+    /// Creates a world on behalf of the server. If it exists already, nothing happens. Returns false if the mailbox is
+    /// full.
+    bool create_own(v1::Request request, simulation::Ownership ownership);
     /// Must be called after a command was refused, or was applied and stored. Sends the answer and reports the change
     /// to subscribers.
     void on_done(runtime::CommandDone done);

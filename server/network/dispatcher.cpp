@@ -1,6 +1,7 @@
 #include "server/network/dispatcher.h"
 
 #include "server/access/authorization.h"
+#include "server/access/random.h"
 #include "server/base/overloaded.h"
 #include "server/log/log.h"
 #include "server/network/description.h"
@@ -102,7 +103,7 @@ base::Refusal shutting_down_refusal() {
 
 Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
                        const Sessions& sessions, Streams& streams, SessionHost& host, std::size_t replays_max,
-                       std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
+                       classes::Registry& classes, std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
     : simulations_{simulations}
     , sessions_{sessions}
     , streams_{streams}
@@ -112,7 +113,27 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulati
     , background_queries_{outbox, simulations.job_turns(), sessions, host.limit_counters}
     , heartbeat_{simulations.mailbox_of("")}
     , commands_{context, simulations, streams, host.limit_counters}
+    , class_requests_{context, classes, sessions, host, class_actions(), access::draw_random}
     , replay_places_{replays_max} {}
+
+ClassActions Dispatcher::class_actions() {
+    return {.create_world =
+                [this](v1::Request request, simulation::Ownership ownership, bool frozen) {
+                    return commands_.create_own(std::move(request), std::move(ownership), frozen);
+                },
+            .send = [this](v1::Request request) { commands_.handle_own(std::move(request)); },
+            // The lead connects these three with the simulation.
+            .freeze = [](const std::string&, bool, const auto& done) { done(std::nullopt); },
+            .set_rules = [](const classes::Class&) {},
+            .worlds_of =
+                [](const classes::Class& of, const auto& done) {
+                    std::vector<std::string> worlds;
+                    for (const classes::Member& member : of.members) {
+                        worlds.push_back(classes::world_of(of, member));
+                    }
+                    done(worlds);
+                }};
+}
 
 void Dispatcher::handle(Session& session, v1::Request request) {
     const auto refuse_it = [&](const base::Refusal& refused) {
@@ -182,6 +203,8 @@ void Dispatcher::serve(Session& session, v1::Request request) {
         return find_run(session, std::move(request));
     case v1::REQUEST_KIND_LEASE:
         return ask(session, std::move(request));
+    case v1::REQUEST_KIND_CLASS:
+        return class_requests_.handle(session, request);
     case v1::REQUEST_KIND_SERVER:
         log::info({.session = session.number(), .client = session.by()}, "session {}: {} shuts the server down",
                   session.number(), session.by());
@@ -426,6 +449,7 @@ void Dispatcher::on_done(runtime::RunFound done) {
 
 void Dispatcher::forget(const Session& session) {
     background_queries_.forget(session);
+    class_requests_.forget(session);
     replay_places_.forget(session.number());
     simulations_.forget(session.number());
 }

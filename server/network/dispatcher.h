@@ -7,6 +7,7 @@
 #pragma once
 
 #include "server/network/background_queries.h"
+#include "server/network/class_requests.h"
 #include "server/network/commands.h"
 #include "server/network/heartbeat.h"
 #include "server/network/replay_places.h"
@@ -23,11 +24,12 @@ class Dispatcher {
     /// All arguments must outlive the dispatcher.
     ///
     /// replays_max  maximum number of replays of all sessions.
+    /// classes      the classes of students.
     /// shut_down    shuts the server down.
     /// metrics      returns the current metrics.
     Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
                const Sessions& sessions, Streams& streams, SessionHost& host, std::size_t replays_max,
-               std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
+               classes::Registry& classes, std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
     /// Handles deliveries from the outbox in order.
@@ -39,6 +41,7 @@ class Dispatcher {
 
     Commands& commands() { return commands_; }
     const ReplayPlaces& replay_places() const { return replay_places_; }
+    ClassRequests& class_requests() { return class_requests_; }
     BackgroundQueries& background_queries() { return background_queries_; }
     /// Sets the rules of a class for its worlds. Calls `done` when they hold.
     ///
@@ -59,6 +62,7 @@ class Dispatcher {
     }
 
   private:
+    ClassActions class_actions();
     /// Handles a request that the session has admitted.
     void serve(Session& session, v1::Request request);
     void query(Session& session, v1::Request request);
@@ -94,6 +98,7 @@ class Dispatcher {
     BackgroundQueries background_queries_;
     Heartbeat heartbeat_;
     Commands commands_;
+    ClassRequests class_requests_;
     ReplayPlaces replay_places_;
     std::map<std::uint64_t, std::function<void()>> class_waiters_; // key: ClassSet::number
     std::uint64_t last_class_change_ = 0;

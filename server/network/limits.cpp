@@ -4,6 +4,7 @@
 #include "proto/codec/tiles.h"
 #include "server/base/assert.h"
 #include "server/base/quota.h"
+#include "server/classes/class.h"
 #include "server/protocol/breeding.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
@@ -147,6 +148,15 @@ constexpr LimitRow table[] = {
     {Limit::HttpRequestTimeout, "http_request_timeout_s", seconds(http_request_timeout),
      "seconds until an HTTP request has arrived, and again until its answer is sent",
      "the server closes the connection"},
+    {Limit::Classes, "classes_max", classes::classes_max, "classes",
+     "the server refuses the request with `RESOURCE_EXHAUSTED`; delete a class first"},
+    {Limit::ClassMembers, "class_members_max", classes::members_max, "members of a class, with those who were removed",
+     "the server refuses the request, or sends a Goodbye, with `RESOURCE_EXHAUSTED`"},
+    {Limit::MemberSessions, "member_sessions_max", classes::member_sessions_max, "sessions of a member of a class",
+     "the server sends the oldest of them a Goodbye and closes it"},
+    {Limit::WrongCodes, "wrong_codes_per_s_max", static_cast<std::uint64_t>(wrong_codes_per_s),
+     "wrong codes per second in a `join`, of all clients together, after the first 50; a right code is always admitted",
+     "the server sends a Goodbye with `RESOURCE_EXHAUSTED` and closes the session; the teachers' pages show a warning"},
 };
 
 } // namespace

@@ -50,6 +50,7 @@ constexpr std::size_t http_header_bytes_max = 8 << 10;
 constexpr std::chrono::seconds http_request_timeout{5};
 
 constexpr std::uint32_t newcomers_max = 256;
+constexpr double wrong_codes_per_s = 5, wrong_codes_burst = 50;
 
 /// Limits that the options of the server can change.
 struct LimitOptions {
@@ -100,6 +101,10 @@ enum class Limit : std::uint8_t {
     HttpConnections,
     HttpHeaderBytes,
     HttpRequestTimeout,
+    Classes,
+    ClassMembers,
+    MemberSessions,
+    WrongCodes,
 };
 
 struct LimitRow {
@@ -124,7 +129,7 @@ v1::Limits limits_message(const LimitOptions& options);
 /// something because another user wanted it.
 class LimitCounters {
   public:
-    static constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::HttpRequestTimeout) + 1;
+    static constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::WrongCodes) + 1;
 
     void met(Limit limit, std::uint64_t times = 1) { add(met_, limit, times); }
     void took_back(Limit limit) { add(taken_back_, limit, 1); }

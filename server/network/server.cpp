@@ -108,6 +108,7 @@ Server::Server(ServerOptions options)
                   streams_,
                   host_,
                   options_.limits.replays_max,
+                  classes_,
                   [this] { stop(); },
                   [this] { return metrics(); }} {
     host_.limits = limits_message(options_.limits);
@@ -118,6 +119,7 @@ Server::Server(ServerOptions options)
     host_.admit = [this](const std::string& token, const std::string& address) {
         return authenticator_->admit(token, address, access::Authenticator::Clock::now());
     };
+    host_.admit_member = [this](const v1::Hello& hello) { return dispatcher_.class_requests().admit(hello); };
     host_.shared_snapshot_bytes = [this] { return streams_.shared_bytes(); };
     host_.ended = [this](Session& session) {
         dispatcher_.forget(session);
@@ -140,6 +142,12 @@ base::Result<void> Server::open_worlds(const LiveWorlds& worlds) {
             return archive.error();
         }
         archive_ = *std::move(archive);
+        auto registry = classes::Registry::open(
+            classes::Registry::File{worlds.storage->folder, worlds.storage->run_files.durability});
+        if (!registry) {
+            return registry.error();
+        }
+        classes_ = *std::move(registry);
         archive_->thread()->disk().set_limits(worlds.storage->limits);
         if (const auto keep = worlds.storage->limits.keep_runs) {
             const auto deleted = run_file::prune(worlds.storage->folder, *keep);
@@ -222,6 +230,7 @@ bool Server::run() {
         .file = std::exchange(replay_, std::nullopt),
     });
 
+    dispatcher_.class_requests().begin();
     wait_for_signal();
     housekeeping_.start(*authenticator_);
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) {

@@ -87,6 +87,7 @@ class Server {
     std::unique_ptr<asio::ssl::context> tls_; // nullptr: no TLS
     std::optional<access::Authenticator> authenticator_;
 
+    classes::Registry classes_;
     std::unique_ptr<base::Executor> executor_;
     std::unique_ptr<replay::Archive> archive_;  // nullptr: runs are not stored
     std::optional<FirstWorld> first_world_;     // empty: the server shows a replay

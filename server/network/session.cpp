@@ -360,7 +360,11 @@ void Session::on_hello(const v1::Hello& hello) {
     if (const auto refused = protocol::refusal_of(hello)) {
         return fail(*refused);
     }
-    auto user = host_.admit(hello.token(), address_prefix_);
+    const auto member = host_.admit_member(hello);
+    if (member && !*member) {
+        return fail(member->error());
+    }
+    auto user = member ? (*member)->user : host_.admit(hello.token(), address_prefix_);
     if (!user) {
         return fail(user.error());
     }
@@ -386,7 +390,7 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_server_version(EVOD_VERSION);
     welcome.set_instance_id(host_.instance_id);
     for (const char* feature : {"codec:plain", "codec:delta", "compression:zstd", "acknowledgements", "view",
-                                "planned_changes", "place", "fitness"}) {
+                                "planned_changes", "place", "fitness", "classes"}) {
         welcome.add_features(feature);
     }
     *welcome.mutable_limits() = limits();
@@ -396,6 +400,9 @@ void Session::on_hello(const v1::Hello& hello) {
     }
     welcome.set_role(access::to_proto(user_->role));
     welcome.set_user(user_->name);
+    if (member) {
+        *welcome.mutable_membership() = (*member)->membership;
+    }
     if (!host_.page.is_local || peer_.address().is_loopback()) {
         welcome.set_page_port(host_.page.port);
         welcome.set_page_host(host_.page.host);

@@ -60,6 +60,12 @@ SessionPtr find_session(const Sessions& sessions, std::uint64_t number);
 /// address's account.
 std::string account_of(const std::string& user, const std::string& address_prefix);
 
+/// A member of a class who may connect.
+struct AdmittedMember {
+    access::AuthenticatedUser user;
+    v1::Membership membership;
+};
+
 /// The interface of the server that a session uses.
 struct SessionHost {
     LimitCounters& limit_counters;
@@ -78,6 +84,9 @@ struct SessionHost {
     /// Authenticates a client by its token and address.
     std::function<base::Result<access::AuthenticatedUser>(const std::string& token, const std::string& address)> admit =
         {};
+    /// Authenticates a member of a class. nullopt: the Hello is not that of a member.
+    std::function<std::optional<base::Result<AdmittedMember>>(const v1::Hello& hello)> admit_member =
+        [](const v1::Hello&) { return std::nullopt; };
     /// Makes room for one more session of this account. Returns nullopt, or why there is none.
     std::function<std::optional<base::Refusal>(const std::string& account)> make_room = [](const std::string&) {
         return std::nullopt;

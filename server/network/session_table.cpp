@@ -1,6 +1,7 @@
 #include "server/network/session_table.h"
 
 #include "server/base/quota.h"
+#include "server/classes/class.h"
 
 #include <algorithm>
 #include <map>
@@ -11,7 +12,7 @@
 namespace evod::network {
 namespace {
 
-base::Refusal to_make_room(const char* why) {
+base::Refusal to_make_room(const std::string& why) {
     return refusal(base::RefusalCode::ResourceExhausted, why, base::Reason::SessionsMax);
 }
 
@@ -58,7 +59,24 @@ void SessionTable::limit_farewells() {
     }
 }
 
+void SessionTable::end_oldest_of_member(const std::string& account) {
+    std::vector<SessionPtr> open;
+    for (const auto& [number, session] : sessions_) {
+        if (session->greeted() && !session->is_over() && session->account() == account) {
+            open.push_back(session);
+        }
+    }
+    if (open.size() >= classes::member_sessions_max) {
+        host_.limit_counters.took_back(Limit::MemberSessions);
+        open.front()->fail(to_make_room("you have connected elsewhere: a member of a class has at most " +
+                                        std::to_string(classes::member_sessions_max) + " sessions"));
+    }
+}
+
 std::optional<base::Refusal> SessionTable::make_room(const std::string& account) {
+    if (classes::is_member_name(account)) {
+        end_oldest_of_member(account);
+    }
     const base::Quota held = places();
     const auto verdict = held.ask(account);
     if (verdict == base::Quota::Verdict::Free) {

@@ -50,6 +50,8 @@ class SessionTable {
   private:
     /// Limits the number of sessions that are over, but have not ended yet.
     void limit_farewells();
+    /// Ends the oldest session of a member of a class who has as many as a member may have.
+    void end_oldest_of_member(const std::string& account);
 
     SessionHost& host_;
     const std::uint32_t sessions_max_;

@@ -31,6 +31,9 @@ std::optional<base::Refusal> refusal_of(const v1::Hello& hello) {
         violations.push_back({"hello.frame_bytes_max", "0, or at least " + std::to_string(client_frame_bytes_min),
                               std::to_string(hello.frame_bytes_max())});
     }
+    if (hello.has_join() && !hello.token().empty()) {
+        violations.push_back({"hello.join", "absent with a token", "a join"});
+    }
     if (!violations.empty()) {
         return invalid(std::move(violations));
     }

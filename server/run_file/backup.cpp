@@ -3,6 +3,7 @@
 #include "server/access/token_file.h"
 #include "server/run_file/check.h"
 #include "server/run_file/data_folder.h"
+#include "server/run_file/database.h"
 #include "server/run_file/run_file.h"
 
 #include <fcntl.h>
@@ -84,7 +85,7 @@ Result<void> expect_apart(const std::string& data, const fs::path& folder) {
         return files.error();
     }
     if (files->of_worlds.empty() && files->ended.empty() && files->replaced.empty() &&
-        !fs::exists(access::token_file_of(data), error)) {
+        !fs::exists(access::token_file_of(data), error) && !fs::exists(classes_file_of(data), error)) {
         return refusal(RefusalCode::NotFound, data + " contains no runs and no tokens: is it the data folder?");
     }
     const fs::path target = fs::weakly_canonical(folder, error);
@@ -123,6 +124,9 @@ class Copier {
             }
         }
         if (auto copied = copy_tokens(); !copied) {
+            return copied.error();
+        }
+        if (auto copied = copy_classes(); !copied) {
             return copied.error();
         }
         return std::move(report_);
@@ -251,6 +255,36 @@ class Copier {
             return cannot("copy", from, error.message());
         }
         report_.has_tokens = true;
+        report_.bytes += fs::file_size(to, error);
+        return sync(to);
+    }
+
+    /// Copies the classes as after their last change. Later worlds of members may be missing: a member's world is
+    /// created again when the member connects.
+    Result<void> copy_classes() {
+        const std::string from = classes_file_of(data_), to = classes_file_of(target_);
+        std::error_code error;
+        if (!fs::exists(fs::symlink_status(from, error)) || fs::file_size(from, error) == 0) {
+            return {};
+        }
+        if (auto sound = expect_file_with_one_name(from); !sound) {
+            failed(sound.error());
+            return {};
+        }
+        Database source{from, Database::Mode::Read};
+        source.run("BEGIN");
+        Statement checked{source, "PRAGMA quick_check(1)"};
+        const bool is_sound = checked.row() && checked.text(0) == "ok";
+        if (source.failed() || !is_sound) {
+            failed(cannot("copy", from, source.failed() ? source.error() : "it is damaged"));
+            return {};
+        }
+        source.copy_to(to);
+        if (source.failed()) {
+            return cannot("copy", from, source.error());
+        }
+        fs::permissions(to, fs::status(from, error).permissions(), error);
+        report_.has_classes = true;
         report_.bytes += fs::file_size(to, error);
         return sync(to);
     }

@@ -18,12 +18,12 @@ namespace evod::run_file {
 
 struct Backup {
     std::size_t worlds = 0, ended = 0; // number of copied runs
-    bool has_tokens = false;
+    bool has_tokens = false, has_classes = false;
     std::uint64_t bytes = 0;
     std::vector<std::string> failures = {}; // why single files could not be copied; the others are in the copy
 };
 
-/// Copies the runs and the tokens of the folder `data` to `folder`, which must be empty or must not exist, and must not
+/// Copies the runs, the tokens and the classes of the folder `data` to `folder`, which must be empty or must not exist, and must not
 /// be in `data`. A refusal means that there is no copy.
 base::Result<Backup> back_up(const std::string& data, const std::string& folder);
 

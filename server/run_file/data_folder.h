@@ -4,6 +4,7 @@
 //   NAME.RUNID.evod   a run that has ended
 //   NAME.evod-next    a run that is being created; it becomes NAME.evod
 //   NAME.damaged-N.evod   the file of a damaged world that was deleted; no server reads it
+//   classes.sqlite    the classes of students (classes/registry)
 //
 // Owner        one server. It locks the file `lock`, so that a second server for the same folder is refused.
 #pragma once
@@ -48,6 +49,11 @@ class DataFolder {
     std::string path_;
     int lock_; // file descriptor
 };
+
+/// The file with the classes of students.
+inline std::string classes_file_of(const std::string& folder) {
+    return folder + "/classes.sqlite";
+}
 
 /// The name of the world whose run is stored in this file.
 std::string world_of(const std::string& path);

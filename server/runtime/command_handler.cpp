@@ -125,6 +125,11 @@ void CommandHandler::handle(const ForEachWorld& mail) {
 
 void CommandHandler::handle(const SetClass& mail) {
     ClassSet done{mail.number};
+    for (const auto& entry : laboratory_.entries()) {
+        if (entry->ownership.class_name == mail.name) {
+            done.worlds.push_back(entry->name);
+        }
+    }
     for (const std::string& world : laboratory_.set_class(mail.name, mail.rules)) {
         changed_.push_back(world);
         done.events.push_back(protocol::run_control_event(**laboratory_.find(world), mail.by));

@@ -50,7 +50,8 @@ struct BatchBegun {
 /// The rules of a class hold now.
 struct ClassSet {
     std::uint64_t number = 0;
-    std::vector<v1::Event> events = {}; // of the worlds that are frozen, or go on
+    std::vector<v1::Event> events = {};    // of the worlds that are frozen, or go on
+    std::vector<std::string> worlds = {};  // all worlds of the class, with the forks
 };
 
 struct QueryDone {
