@@ -7,13 +7,14 @@ import type {CoreEvent, Subscription} from "./core/core_session";
 import {InvalidMessage} from "./core/errors";
 import {EventQueue} from "./core/event_queue";
 import {type Figures, type FromWorker, none_left, type ToWorker} from "./core/messages";
-import type {Request} from "./core/protocol";
+import type {Join, Request} from "./core/protocol";
 import {is_name_of_replay} from "./core/request_queue";
 import type {Snapshot} from "./core/snapshot";
 import {worker_texts} from "./texts/worker";
 import {Connection} from "./worker/connection";
 import {WorkerPane} from "./worker/pane";
 import {Timings} from "./worker/timings";
+import {WorkerWall} from "./worker/wall";
 
 const hidden_max_ms = 60_000;
 const events_max = 1000; // events that wait for the page
@@ -35,10 +36,11 @@ const event_queue = new EventQueue(events_max);
 let events_sent = false; // the page has not taken them yet, or took them less than events_interval_ms ago
 let is_looping = false;
 const panes = new Map<number, WorkerPane>();
+const wall = new WorkerWall(connection);
 const ids = new Map<number, number>(); // ids of the page by ids of the core
 
-function begin(url: string, token: string, descriptor: ArrayBuffer): void {
-  const core = connection.begin(url, token, new Uint8Array(descriptor));
+function begin(url: string, token: string, join: Join|null, descriptor: ArrayBuffer): void {
+  const core = connection.begin(url, token, join, new Uint8Array(descriptor));
   scope.postMessage({kind: "rules", rules: core.schema.request_rules(), roles: core.schema.enum_names("evod.v1.Role")});
   core.subscriptions.subscribe({subscribe_events: {}});
   for (const {feed} of panes.values()) {
@@ -48,6 +50,7 @@ function begin(url: string, token: string, descriptor: ArrayBuffer): void {
     }
   }
   panes.forEach((pane) => pane.start());
+  wall.start();
   connection.open();
 }
 
@@ -119,7 +122,9 @@ function panes_of(subscription: Subscription): [number, WorkerPane][] {
 function take_snapshot(subscription: Subscription, snapshot: Snapshot): void {
   timings.snapshot_count += 1;
   const now_ms = performance.now();
-  if (![...panes.values()].some((pane) => pane.take_snapshot(subscription, snapshot, now_ms))) {
+  const is_taken = wall.take_snapshot(subscription, snapshot, now_ms) ||
+    [...panes.values()].some((pane) => pane.take_snapshot(subscription, snapshot, now_ms));
+  if (!is_taken) {
     connection.core!.subscriptions.acknowledge(subscription, snapshot);
   }
   loop();
@@ -150,9 +155,9 @@ function loop(): void {
 /** Draws all panes that need it. Returns whether another frame is needed. */
 function draw(): boolean {
   const now_ms = performance.now(), {core} = connection;
-  let again = false, drawn = false;
+  const acknowledge = (of: Subscription, snapshot: Snapshot): void => core?.subscriptions.acknowledge(of, snapshot);
+  let drawn = wall.draw(now_ms, acknowledge), again = wall.needs_frame;
   for (const pane of panes.values()) {
-    const acknowledge = (of: Subscription, snapshot: Snapshot): void => core?.subscriptions.acknowledge(of, snapshot);
     drawn = pane.draw(now_ms, acknowledge) || drawn;
     again = pane.report(now_ms) || pane.needs_frame(now_ms) || again;
   }
@@ -170,10 +175,12 @@ function show(visible: boolean): void {
     hidden_timer = setTimeout(() => {
                      connection.may_stream = false;
                      panes.forEach((pane) => pane.stop());
+                     wall.stop();
                    }, hidden_max_ms) as unknown as number;
     return;
   }
   connection.may_stream = true;
+  wall.start_missing();
   for (const pane of panes.values()) {
     if (!pane.feed.subscription) {
       pane.start();
@@ -189,7 +196,7 @@ function show(visible: boolean): void {
 scope.onmessage = ({data: message}) => {
   switch (message.kind) {
     case "connect":
-      begin(message.url, message.token, message.descriptor);
+      begin(message.url, message.token, message.join, message.descriptor);
       break;
     case "request":
       request(message.id, message.request, message.first === true);
@@ -205,6 +212,13 @@ scope.onmessage = ({data: message}) => {
       break;
     case "ask_figures":
       scope.postMessage({kind: "figures", id: message.id, figures: figures()});
+      break;
+    case "wall":
+    case "wall_size":
+    case "wall_tiles":
+    case "close_wall":
+      wall.take(message);
+      loop();
       break;
     case "close_pane":
       panes.get(message.pane)?.close();

@@ -75,6 +75,25 @@ const lost = { message: "the connection ended", code: "" };
 
 // ---- the connection ----------------------------------------------------------------------------------------------------
 
+test("a member joins once and then has a token", () => {
+  const join = { code: "KTRMXB", name: "Fox" }, session = new Session({ join });
+  session.core.opened();
+  const [{ hello }] = session.sent();
+  assert.deepEqual([hello.join, hello.token], [join, undefined]);
+  session.say({ welcome: { protocol_version: 1, limits, membership: { token: "secret" } } });
+  session.core.lost(lost);
+  session.core.opened();
+  const [{ hello: again }] = session.sent();
+  assert.deepEqual([again.join, again.token], [undefined, "secret"]);
+});
+
+test("a refused join is not repeated", () => {
+  const session = new Session({ join: { code: "KTRMXB" } });
+  session.core.opened();
+  session.say({ goodbye: { status: { code: "CODE_RESOURCE_EXHAUSTED", reason: "REASON_JOINS_TOO_FAST", message: "too fast" } } });
+  assert.equal(session.core.failed.reason, "REASON_JOINS_TOO_FAST");
+});
+
 test("the Hello is the first message and contains the token", () => {
   const session = new Session({ token: "secret" });
   session.core.requests.add({ list_worlds: {} });

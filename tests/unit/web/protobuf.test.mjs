@@ -108,10 +108,10 @@ test("bytes are views", () => {
 test("rules of requests are read by reflection", () => {
   const rules = schema.request_rules();
   assert.deepEqual(rules.get("seek"), { kind: "REQUEST_KIND_REPLAY", role: "ROLE_CONTROLLER", viewer_in_own_replay: true, answer: "world" });
-  assert.deepEqual(rules.get("delete_world"), { kind: "REQUEST_KIND_COMMAND", role: "ROLE_ADMIN" });
+  assert.deepEqual(rules.get("delete_world"), { kind: "REQUEST_KIND_COMMAND", role: "ROLE_ADMIN", by_owner: true });
   const oneof = schema.type("evod.v1.Request").fields.filter((field) => field.oneof !== null).map((field) => field.name);
   assert.deepEqual([...rules.keys()], oneof);
-  assert.deepEqual(schema.enum_names("evod.v1.Role"), ["ROLE_UNSPECIFIED", "ROLE_VIEWER", "ROLE_CONTROLLER", "ROLE_ADMIN"]);
+  assert.deepEqual(schema.enum_names("evod.v1.Role"), ["ROLE_UNSPECIFIED", "ROLE_VIEWER", "ROLE_TEACHER", "ROLE_CONTROLLER", "ROLE_ADMIN"]);
 });
 
 test("a message that does not fit its type is refused by name", () => {

@@ -57,6 +57,14 @@ test("a refused token of a link gives way to the one before", () => {
   assert.equal(tab.stored, "");
 });
 
+test("the token of a new member is kept for the tab", () => {
+  const { tab, tokens } = tokens_with("");
+  tokens.opened("member");
+  assert.deepEqual([tokens.used, tab.stored], ["member", "member"]);
+  tokens.opened("");
+  assert.equal(tokens.used, "member");
+});
+
 test("a refused token is not kept for the tab", () => {
   const { tab, tokens } = tokens_with("");
   assert.equal(tokens.begin("wrong"), "wrong");

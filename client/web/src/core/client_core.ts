@@ -10,7 +10,7 @@
 import type {CoreEvent, CoreSession, Loss} from "./core_session";
 import {DamagedData} from "./errors";
 import {control_channel, encode_frame, FrameReader} from "./frames";
-import type {ClientMessage, Hello, Response, ServerMessage, Status, Welcome} from "./protocol";
+import type {ClientMessage, Hello, Join, Response, ServerMessage, Status, Welcome} from "./protocol";
 import {Schema} from "./protobuf";
 import {RequestQueue} from "./request_queue";
 import {Subscriptions} from "./subscriptions";
@@ -23,6 +23,7 @@ const final_codes = new Set(["CODE_UNAUTHENTICATED", "CODE_PERMISSION_DENIED", "
 export interface CoreOptions {
   client_name: string; // at most 64 bytes
   token: string; // empty: none
+  join?: Join|null; // instead of a token: connects as a member of a class
   server: string; // names the server in messages: "127.0.0.1:7745"
 }
 
@@ -36,7 +37,7 @@ export class ClientCore implements CoreSession {
   loss: Loss|null = null; // why there is no session at present
   retry_late = false; // the server is full: connect again only after the longest wait
 
-  readonly #hello: Hello;
+  #hello: Hello;
   readonly #server: string;
   #reader = new FrameReader();
   #queued: Uint8Array[] = []; // frames to send
@@ -46,7 +47,7 @@ export class ClientCore implements CoreSession {
   constructor(descriptor: Uint8Array, options: CoreOptions) {
     this.schema = new Schema(descriptor);
     this.#server = options.server;
-    this.#hello = {protocol_version, client_name: options.client_name, token: options.token};
+    this.#hello = hello(options.client_name, options.token, options.join ?? null);
   }
 
   // ---- the connection ----------------------------------------------------------------------------------------------
@@ -168,7 +169,8 @@ export class ClientCore implements CoreSession {
       const loss = loss_of(message.goodbye.status);
       const refused = {...loss, message: `the server at ${this.#server} refused this client: ${loss.message}`};
       this.retry_late = loss.code === "CODE_RESOURCE_EXHAUSTED";
-      if (loss.code !== "CODE_RESOURCE_EXHAUSTED" && loss.code !== "CODE_UNAVAILABLE") {
+      const is_temporary = loss.code === "CODE_RESOURCE_EXHAUSTED" || loss.code === "CODE_UNAVAILABLE";
+      if (!is_temporary || this.#hello.join !== undefined) { // the user decides whether to join again
         this.failed = refused;
       }
       this.#close_connection(refused);
@@ -188,6 +190,10 @@ export class ClientCore implements CoreSession {
       return;
     }
     this.welcome = message.welcome;
+    const token = message.welcome.membership?.token ?? "";
+    if (token !== "") { // a second join would make a second member
+      this.#hello = hello(this.#hello.client_name ?? "", token, null);
+    }
     this.loss = null;
     this.report({kind: "opened", welcome: message.welcome});
     // All subscriptions are sent first, so that subscribers receive the events that the other requests cause.
@@ -207,6 +213,10 @@ export class ClientCore implements CoreSession {
     }
     this.requests.send_waiting();
   }
+}
+
+function hello(client_name: string, token: string, join: Join|null): Hello {
+  return {protocol_version, client_name, ...(join === null ? {token} : {join})};
 }
 
 /** Returns the reason in a Status. */

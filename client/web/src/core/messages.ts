@@ -5,7 +5,7 @@
 //
 // protocol.ts describes the messages of the protocol.
 import {event_kinds} from "./protocol";
-import type {Event, EventKinds, One, Request, RequestKinds, RequestRules, Response, Welcome} from "./protocol";
+import type {Event, EventKinds, Join, One, Request, RequestKinds, RequestRules, Response, Welcome} from "./protocol";
 import type {Snapshot, SnapshotInfo} from "./snapshot";
 
 export type RequestKind = keyof RequestKinds;
@@ -29,6 +29,7 @@ export interface ConnectionState {
   phase: "connecting"|"open"|"lost"|"refused"; // lost: tries again by itself; refused: a user has to act
   message: string; // why, as a sentence; empty in "open"
   code: string; // "CODE_UNAUTHENTICATED" …; empty if there is none
+  reason: string; // "REASON_CODE_UNKNOWN" …; empty if there is none
   silent_s: number; // the server has sent nothing for so long although a world runs; 0: it sends
   welcome: Welcome|null; // of the present or the last session
 }
@@ -71,6 +72,15 @@ export interface TileInfo {
   health_mean: number; // of the living organisms; 0 if there are none
 }
 
+/** A world on the wall of a class, and the place of its first island on the canvas, in CSS pixels. */
+export interface WallTile {
+  world: string;
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
 /** The camera of a pane, in pixels of the island. */
 export interface Camera {
   x_px: number; // the point in the middle of the pane
@@ -93,7 +103,7 @@ export interface PopulationColumns {
 }
 
 interface MessagesToWorker {
-  connect: {url: string; token: string; descriptor: ArrayBuffer};
+  connect: {url: string; token: string; join: Join | null; descriptor: ArrayBuffer};
   request: {id: number; request: Request; first?: boolean}; // Request without request_id and client_key
   pane: {pane: number; canvas: OffscreenCanvas}; // transferred
   close_pane: {pane: number};
@@ -107,6 +117,10 @@ interface MessagesToWorker {
   select: {pane: number; organism: number | null; hovered: number | null; follow: boolean};
   population: {pane: number; columns: PopulationColumns | null};
   pick: {pane: number; id: number; x: number; y: number; radius: number}; // CSS pixels in the canvas
+  wall: {canvas: OffscreenCanvas}; // transferred; the wall of a class
+  wall_size: {width: number; height: number; pixel_ratio: number}; // CSS pixels
+  wall_tiles: {tiles: WallTile[]; look: Look}; // subscribes to their worlds, and to no others
+  close_wall: {};
   events_taken: {}; // the worker may send further events
   visible: {visible: boolean}; // document.visibilityState
   ask_columns: {pane: number; id: number}; // for tests: the entities of the drawn snapshot

@@ -164,10 +164,10 @@ export class Schema {
     return type;
   }
 
-  /** Returns the names of an enum in the order of their numbers; empty if there is no such enum. */
+  /** Returns the names of an enum in the order of their declaration; empty if there is no such enum. */
   enum_names(name: string): string[] {
     const numbers = this.#enums.get(name)?.numbers ?? new Map<string, number>();
-    return [...numbers].sort((a, b) => a[1] - b[1]).map(([value]) => value);
+    return [...numbers.keys()];
   }
 
   decode<Name extends keyof Messages>(type: Name, bytes: Uint8Array): Messages[Name] {

@@ -2,7 +2,8 @@
 // below.
 import {kind_of} from "../core/messages";
 import type {Event as WorldEvent, WorldInfo} from "../core/protocol";
-import {panels} from "../panels/all";
+import {class_panel, panels} from "../panels/all";
+import {ClassMode} from "./class_mode";
 import {Column} from "./column";
 import {set_attribute} from "../widgets/controls";
 import {copy_text} from "../widgets/copy";
@@ -12,7 +13,7 @@ import {EvolutionButton} from "./evolution_button";
 import {Introduction} from "./introduction";
 import {LinkFollower} from "./link_follower";
 import {link_of} from "../world/link";
-import {unused_name} from "../world/names";
+import {fork_name} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
 import type {Help} from "../panels/help";
 import {key_lines, type KeyTarget, last_panel_key, listen_to_keys} from "./keys";
@@ -43,6 +44,7 @@ export class App implements KeyTarget {
   readonly panes: PaneAreas;
   readonly evolution: EvolutionButton;
   readonly introduction: Introduction;
+  readonly class_mode: ClassMode;
 
   readonly #empty: HTMLElement;
   readonly #about = h("p", {class: "about"});
@@ -73,6 +75,7 @@ export class App implements KeyTarget {
       }),
     });
     this.evolution = new EvolutionButton(this, () => this.refresh());
+    this.class_mode = new ClassMode(this, () => this.refresh());
     const offer =
       h("button", {type: "button", class: "button button-primary", onclick: () => this.evolution.toggle()},
         evolution_button_texts.show);
@@ -85,7 +88,8 @@ export class App implements KeyTarget {
     this.#show_column = button("«", app_texts.show_column, app_texts.show_column_help, "show-column", toggle);
     const help = button("?", app_texts.help, app_texts.help_help, "button-quiet", () => this.toggle_help());
     this.column = new Column(
-      this, server, new Overview(this, this.evolution.element), panels.map((make) => make(this)),
+      this, server, new Overview(this, this.evolution.element),
+      [...panels, ...(server.access.may_teach ? [class_panel] : [])].map((make) => make(this)),
       new Tools(this, () => this.panes.focused.pane.tool), [theme_button(), help, hide]);
     this.element =
       h("div", {class: "app"},
@@ -99,18 +103,27 @@ export class App implements KeyTarget {
     listen_to_keys(this);
     this.refresh();
     this.follow_link(location.hash);
+    const lesson = server.access.membership?.lesson ?? "";
+    if (lesson !== "") {
+      this.open("lesson", {lesson});
+    }
   }
 
-  /** Shows the moment that the fragment of an address names; does nothing if it names none. */
+  /** Shows the moment or the class that the fragment of an address names; does nothing if it names none. */
   follow_link(hash: string): void {
-    void this.#link.follow(hash);
+    const of_class = new URLSearchParams(hash.slice(1)).get("class");
+    if (of_class === null) {
+      void this.#link.follow(hash);
+    } else {
+      this.class_mode.open(of_class);
+    }
   }
 
   /** Shows the present state. */
   refresh(): void {
     const server = this.server, names = server.worlds.names, {areas} = this;
     this.#notices.refresh();
-    const first = names.includes(first_world) ? first_world : names[0];
+    const first = [server.access.membership?.world, first_world].find((name) => names.includes(name ?? "")) ?? names[0];
     if (server.worlds.are_known && !areas[0]!.world.name && first !== undefined) {
       areas[0]!.world.show(first);
     }
@@ -139,6 +152,8 @@ export class App implements KeyTarget {
   other(): ViewedWorld|null {
     return this.panes.other?.world ?? null;
   }
+
+  open_class = (name: string): void => this.class_mode.open(name);
 
   open = (name: string, subject?: {[key: string]: unknown}): void => {
     const panel = this.column.panels.find((one) => one.name === name);
@@ -196,7 +211,8 @@ export class App implements KeyTarget {
 
   fork = async(name?: string): Promise<void> => {
     const server = this.server, world = this.world(), {island} = world;
-    const fork = name ?? unused_name(world.name, server.worlds.names);
+    const origin = server.worlds.find(world.name) ?? {name: world.name};
+    const fork = name ?? fork_name(origin, server.worlds.taken_names);
     let begin: WorldInfo = {};
     const act = async(): Promise<void> => {
       begin = await server.request("fork_world", {world: world.shown, name: fork});
@@ -281,7 +297,8 @@ export class App implements KeyTarget {
       this.column.refresh();
       this.introduction.refresh(this.world().has_bodies);
       this.evolution.refresh();
-      this.#banners.set(banners_of(this.server, this.#tokens, this.#link, this.evolution, () => this.refresh()));
+      const banners = banners_of(this.server, this.#tokens, this.#link, this.evolution, () => this.refresh());
+      this.#banners.set([...banners, ...this.class_mode.banners()]);
       this.#notices.refresh();
       const {counts} = this.world().snapshot ?? {};
       set_text(this.#about, app_texts.about(counts !== undefined && counts.food + counts.poison > 0));

@@ -12,8 +12,8 @@ import type {LinkFollower} from "./link_follower";
 export function banners_of(
   server: Server, tokens: Tokens, link: LinkFollower, evolution: EvolutionButton, on_decline: () => void): Banner[] {
   return [
-    ...of_connection(server), ...of_token(server, tokens, on_decline), ...link.banners(), ...of_storage(server),
-    ...evolution.banners()
+    ...of_connection(server), ...of_class(server), ...of_token(server, tokens, on_decline), ...link.banners(),
+    ...of_storage(server), ...evolution.banners()
   ];
 }
 
@@ -30,6 +30,11 @@ function of_connection(server: Server): Banner[] {
     banners.push({name: "updated", kind: "warn", text: app_texts.updated, actions: [reload]});
   }
   return banners;
+}
+
+function of_class({access: {membership}, worlds}: Server): Banner[] {
+  const is_frozen = membership !== null && worlds.all.some(({frozen}) => frozen);
+  return is_frozen ? [{name: "frozen", kind: "warn", text: app_texts.frozen}] : [];
 }
 
 /** Asks whether to use the token of a link. */

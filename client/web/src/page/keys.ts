@@ -7,6 +7,7 @@ import {key_texts} from "../texts/keys";
 import type {PanelContext} from "../world/panel_context";
 import type {Server} from "../world/server";
 import {undo, undo_verb_of} from "../world/undo_command";
+import type {ClassMode} from "./class_mode";
 import type {Column} from "./column";
 import type {EvolutionButton} from "./evolution_button";
 import type {PaneAreas} from "./pane_areas";
@@ -21,6 +22,8 @@ export interface KeyTarget extends PanelContext {
   toggle_column(): void;
   toggle_help(): void;
   readonly evolution: EvolutionButton;
+  readonly element: HTMLElement;
+  readonly class_mode: ClassMode;
 }
 
 interface Binding {
@@ -118,6 +121,9 @@ export function listen_to_keys(app: KeyTarget): void {
     by_pointer = true;
   }, true);
   document.addEventListener("keydown", (event) => {
+    if (app.element.hidden) { // the wall of a class is shown
+      return;
+    }
     by_pointer &&= event.key === " ";
     const verb = event.defaultPrevented || document.querySelector("dialog[open]") ? null : undo_verb_of(event);
     if (verb !== null) {
@@ -247,7 +253,7 @@ function escape(app: KeyTarget): void {
     world.selection.select(null);
   } else if (tiles.is_on) {
     tiles.toggle();
-  } else {
-    tiles.return_to_all();
+  } else if (!tiles.return_to_all()) {
+    app.class_mode.back();
   }
 }

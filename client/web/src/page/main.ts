@@ -8,7 +8,7 @@ import {of_tab} from "../world/storage";
 import {Tokens} from "../world/tokens";
 
 import {App} from "./app";
-import {Start, take_token} from "./start";
+import {Start, take_secret} from "./start";
 
 declare const trustedTypes:
   {createPolicy(name: string, rules: {createScriptURL(url: string): string}): {createScriptURL(url: string): string}}|
@@ -30,7 +30,7 @@ function start_worker(): Worker {
 }
 
 async function run(): Promise<void> {
-  const linked = take_token(), tokens = new Tokens(of_tab), start = new Start();
+  const linked = take_secret("token"), code = take_secret("join"), tokens = new Tokens(of_tab), start = new Start();
   document.body.append(start.element);
   if (typeof OffscreenCanvas === "undefined") {
     start.fail(start_texts.too_old);
@@ -57,8 +57,8 @@ async function run(): Promise<void> {
     }
     state = server.state;
     if (state.phase === "open") {
-      tokens.opened();
-    } else if (state.phase === "refused" && state.code === "CODE_UNAUTHENTICATED") {
+      tokens.opened(state.welcome?.membership?.token ?? "");
+    } else if (state.phase === "refused" && state.code === "CODE_UNAUTHENTICATED" && !server.is_joining) {
       const other = tokens.refused();
       if (other !== null) {
         app?.notify(state.message);
@@ -85,14 +85,29 @@ async function run(): Promise<void> {
     }
   });
   addEventListener("hashchange", () => {
-    const followed = take_token(), token = followed === null ? null : tokens.follow(followed);
+    const followed = take_secret("token"), followed_code = take_secret("join"),
+          token = followed === null ? null : tokens.follow(followed);
     if (token !== null) {
       server.connect(token);
+    }
+    if (followed_code !== null && app?.element.isConnected) {
+      app.class_mode.offer(() => join(followed_code));
+    } else if (followed_code !== null) {
+      join(followed_code);
     }
     app?.follow_link(location.hash);
     app?.refresh();
   });
-  server.connect(tokens.begin(linked));
+  const join = (of_class: string): void => {
+    tokens.use("");
+    app?.element.replaceWith(start.element);
+    void start.ask_to_join(server, of_class);
+  };
+  if (code === null || of_tab.get("token") !== "") { // the link of a class is not followed twice
+    server.connect(tokens.begin(linked));
+  } else {
+    join(code);
+  }
 }
 
 void run();

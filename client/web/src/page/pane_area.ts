@@ -1,5 +1,6 @@
 // PaneArea: a pane with its strips: above the canvas what is shown and how the world runs, below it the time line of a
 // replay and the statistics of the island.
+import {access_texts} from "../texts/access";
 import {link_texts, pane_texts, tile_texts} from "../texts/pane";
 import {place_and_speed_text, statistics_texts} from "../texts/snapshot";
 import {state_word} from "../texts/states";
@@ -126,7 +127,7 @@ export class PaneArea {
     const place = snapshot && place_and_speed_text(world.name, snapshot, world.control.speed, is_running && with_rate);
     set_text(this.#place, place ?? world.name);
     const is_connected = server.state.phase === "open", is_silent = server.state.silent_s > 0;
-    const runs_now = is_connected && is_running && !is_silent;
+    const runs_now = is_connected && is_running && !is_silent && !info?.frozen;
     set_text(this.#state, this.#state_text() + (runs_now && info?.slowed ? pane_texts.slower : ""));
     set_attribute(this.#state, "data-state", runs_now ? "running" : "stopped");
     this.#refresh_islands();
@@ -135,7 +136,9 @@ export class PaneArea {
       this.#foot.lastElementChild!.remove();
     }
     texts.forEach((text, i) => set_text(this.#foot.children[i] ?? this.#foot.appendChild(h("span", {})), text));
-    this.#start.hidden = world.is_replay || world.control.state !== "RUN_STATE_WAITING" || !server.access.may_take_part;
+    const may_run =
+      ["", access_texts.watching, access_texts.no_connection].includes(server.access.why_not("run", world.shown));
+    this.#start.hidden = world.is_replay || world.control.state !== "RUN_STATE_WAITING" || !may_run;
     const is_waiting = !snapshot && world.shown !== "" && !this.pane.tiles.is_on;
     set_text(this.#message, world.feed.problem || (is_waiting ? pane_texts.waiting : ""));
     this.#message.hidden = this.#message.textContent === "";
@@ -150,6 +153,9 @@ export class PaneArea {
     }
     if (!snapshot && !info) {
       return "";
+    }
+    if (info?.frozen) {
+      return pane_texts.frozen;
     }
     if (state === "RUN_STATE_RUNNING" && server.state.silent_s > 0) {
       return pane_texts.silent(server.state.silent_s);

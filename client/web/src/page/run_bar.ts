@@ -4,8 +4,8 @@ import {run_bar_texts as texts} from "../texts/run_bar";
 import {speed_text} from "../texts/states";
 import {guarded_button, set_allowed, set_attribute} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {speed_max} from "../world/run_control";
 import {both_state, run_or_pause_both} from "../world/run_both";
+import {speed_max} from "../world/run_control";
 
 import type {ViewedWorld} from "../world/world";
 import type {PanelContext} from "../world/panel_context";
@@ -93,7 +93,10 @@ export class RunBar {
       this.#replay, world.past.is_own_replay ? "" : world.past.problem,
       world.past.is_own_replay ? texts.live_help : texts.replay_help);
     const why_create = server.access.why_not("create_world");
-    set_allowed(this.#fork, !info ? texts.no_world : why_create, texts.fork_help);
+    const {membership} = server.access;
+    set_text(this.#fork, membership ? texts.what_if : texts.fork);
+    set_allowed(this.#fork, !info ? texts.no_world : server.access.why_not("fork_world", world.shown), texts.fork_help);
+    this.#new.hidden = membership !== null;
     set_allowed(this.#new, why_create, texts.create_help);
     const why_speed = why_control && (server.access.why_not("set_speed", world.shown) || why_control),
           max = world.control.speed?.max === true;

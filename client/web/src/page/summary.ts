@@ -45,8 +45,7 @@ export class Summary {
       h("div", {class: "row column-head"}, h("span", {class: "label"}, texts.world), this.#world, this.#island,
         ...head),
       this.#experiment, this.#warnings, this.#legend.element,
-      h("div", {class: "row part"}, this.#part, this.#part_text, this.#session),
-      this.#run_bar.element, tools.element);
+      h("div", {class: "row part"}, this.#part, this.#part_text, this.#session), this.#run_bar.element, tools.element);
   }
 
   refresh(): void {
@@ -58,15 +57,17 @@ export class Summary {
     set_text(this.#warnings, world.parameters.set === null ? "" : warning_text(world.parameters.warnings));
     this.#legend.refresh(world);
     this.#run_bar.refresh();
-    this.#part.hidden = !server.access.may_take_part;
+    const {membership} = server.access;
+    this.#part.hidden = !server.access.may_take_part || membership !== null;
     this.#part.className = taking_part ? "button" : "button button-primary";
     set_text(this.#part, taking_part ? texts.only_watch : texts.take_part);
     const part_text = state.phase !== "open" ? texts.no_connection :
-      !server.access.may_take_part                  ? texts.is_viewer :
+      membership !== null                    ? texts.is_member(membership) :
+      !server.access.may_take_part           ? texts.is_viewer :
       taking_part                            ? texts.takes_part :
                                                texts.watches(world.has_bodies);
     set_text(this.#part_text, part_text);
-    set_text(this.#session, state.phase === "open" ? session_text(state.welcome) : "");
+    set_text(this.#session, state.phase === "open" && membership === null ? session_text(state.welcome) : "");
     this.#tools.refresh(taking_part && world.has_bodies);
   }
 

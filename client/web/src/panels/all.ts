@@ -4,7 +4,6 @@ import type {Panel, PanelContext} from "../world/panel_context";
 
 import {EventsPanel} from "./events";
 import {LazyPanel} from "./lazy";
-import {ParametersPanel} from "./parameters";
 
 type Later = typeof import("./loaded_later");
 
@@ -14,10 +13,13 @@ function later(name: string, title: string, make: (loaded: Later, context: Panel
   return (context) => new LazyPanel(name, title, async () => make(await import("./loaded_later"), context));
 }
 
+/** The panel of those who may have classes. */
+export const class_panel = later("class", texts.class, ({ClassPanel}, context) => new ClassPanel(context));
+
 export const panels: ((context: PanelContext) => Panel)[] = [
   later("worlds", texts.worlds, ({WorldsPanel}, context) => new WorldsPanel(context)),
   later("run", texts.run, ({RunPanel}, context) => new RunPanel(context)),
-  (context) => new ParametersPanel(context),
+  later("parameters", texts.parameters, ({ParametersPanel}, context) => new ParametersPanel(context)),
   later("view", texts.view, ({ViewPanel}, context) => new ViewPanel(context)),
   later("organism", texts.organism, ({OrganismPanel}, context) => new OrganismPanel(context)),
   later("glass box", texts.glass_box, ({GlassBoxPanel}, context) => new GlassBoxPanel(context)),

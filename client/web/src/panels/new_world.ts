@@ -17,9 +17,9 @@ import {Dialog, set_attribute, set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {button, check, hint, labelled, row} from "../widgets/form";
 import {open_button} from "../widgets/files";
+import {experiment_json} from "../world/experiment_text";
 import {gene_problem, name_characters_max, name_of_file, name_problem, unused_name} from "../world/names";
 
-import type {ParameterSet, ParameterValue} from "../core/protocol";
 import type {PanelContext} from "../world/panel_context";
 
 const presets: [string, {description: string}][] = [
@@ -27,21 +27,6 @@ const presets: [string, {description: string}][] = [
   ["rooy", rooy], ["trade_offs", trade_offs]
 ];
 const seed_max = (1n << 64n) - 1n;
-
-/** The text of an experiment file with the parameters and the schedule of a ParameterSet. */
-export function experiment_json(set: ParameterSet): string {
-  const value_of = (value: ParameterValue|undefined): unknown =>
-    value?.real ?? value?.count ?? value?.flag ?? value?.choice;
-  const experiment: {[name: string]: unknown} = {};
-  for (const parameter of set.parameters ?? []) {
-    const now = value_of(parameter.pending ?? parameter.value);
-    const later = (set.schedule ?? []).filter((one) => one.name === parameter.name);
-    experiment[parameter.name ?? ""] = later.length === 0 ?
-      now :
-      Object.fromEntries([["1", now], ...later.map((one) => [String(one.generation), value_of(one.value)])]);
-  }
-  return JSON.stringify(experiment, null, 2);
-}
 
 let dialog: NewWorldDialog|null = null;
 

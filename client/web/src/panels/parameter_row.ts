@@ -129,7 +129,7 @@ export class ParameterRow {
     if (this.#help.hidden) {
       return;
     }
-    const about = this.#about, {pending, requested, value} = this.#state, current = value_text(value);
+    const {about, pending, requested, value} = this.#state, current = value_text(value);
     const facts = texts.facts(
       allowed_text(about) + (about.unit ? ` ${about.unit}` : ""), value_text(about.default_value ?? {}),
       pending !== null ? texts.now_and_then(current, value_text(requested)) : current);

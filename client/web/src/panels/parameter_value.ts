@@ -34,7 +34,6 @@ export class ParameterControl {
   typing_problem = "";
 
   readonly #context: RowContext;
-  readonly #about: ParameterDescription;
   readonly #parameter: number;
   #dragging = false; // the user holds the slider
   #typing = false; // the text of the field is not finished
@@ -42,7 +41,6 @@ export class ParameterControl {
   constructor(context: RowContext, parameter: number, names: ControlNames) {
     this.#context = context;
     this.#parameter = parameter;
-    this.#about = context.edits.registry[parameter]!;
     if (is_number(this.#about)) {
       this.slider = this.#made_slider(names);
       this.main = this.#made_field(names);
@@ -53,6 +51,10 @@ export class ParameterControl {
     } else {
       this.main = this.#made_choice(names);
     }
+  }
+
+  get #about(): ParameterDescription {
+    return this.#context.edits.parameters[this.#parameter]!.about;
   }
 
   /** Shows the present value. */

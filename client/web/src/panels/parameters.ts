@@ -3,6 +3,7 @@
 //
 // ParameterExchange has the edits and sends the requests, ParameterList shows the parameters. While the user edits, the
 // server checks the edits with dry runs, so that a wrong value is marked before it is applied.
+import {panels_texts} from "../texts/panels";
 import {parameters_texts as texts, warning_text} from "../texts/parameters";
 import {undo_texts} from "../texts/undo";
 import {set_enabled} from "../widgets/controls";
@@ -18,7 +19,7 @@ import {PlannedChanges} from "./planned_changes";
 
 export class ParametersPanel implements Panel {
   readonly name = "parameters";
-  readonly title = texts.title;
+  readonly title = panels_texts.parameters;
   readonly element: HTMLElement;
 
   readonly #context: PanelContext;

@@ -48,7 +48,7 @@ export class SecondWorld {
     const fork: Choice = {
       label: texts.fork(world.name),
       hint: texts.fork_hint,
-      why_not: server.access.why_not("fork_world"),
+      why_not: server.access.why_not("fork_world", world.shown),
       act: () => void this.#context.fork(),
     };
     set_text(this.#wrong, "");

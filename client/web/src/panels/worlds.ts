@@ -7,7 +7,7 @@ import {speed_text, state_word} from "../texts/states";
 import {worlds_texts as texts} from "../texts/worlds";
 import {guarded_button, set_allowed} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {Question, hint} from "../widgets/form";
+import {hint, Question} from "../widgets/form";
 import {name_problem, unused_name} from "../world/names";
 
 import type {Panel, PanelContext} from "../world/panel_context";
@@ -62,14 +62,18 @@ export class WorldsPanel implements Panel {
     update_rows(this.#worlds, this.#world_rows(), 1);
     const why_create = server.access.why_not("create_world");
     set_allowed(this.#create, why_create, texts.create_help);
-    set_allowed(this.#fork, world.info ? server.access.why_not("fork_world") : common_texts.no_world, texts.fork_help);
+    set_allowed(
+      this.#fork, world.info ? server.access.why_not("fork_world", world.shown) : common_texts.no_world,
+      texts.fork_help);
     set_allowed(
       this.#remove,
       !world.info && !server.worlds.damage_of(world.name) ? common_texts.no_world :
-        world.is_replay                            ? texts.return_first :
-                                                     server.access.why_not("delete_world"));
-    set_text(this.#why, why_create);
-    if (why_create) {
+        world.is_replay                                   ? texts.return_first :
+                                                            server.access.why_not("delete_world", world.name));
+    const is_member = server.access.membership !== null;
+    this.#create.hidden = is_member;
+    set_text(this.#why, is_member ? "" : why_create);
+    if (why_create && !is_member) {
       this.#confirm.element.hidden = this.#fork_form.element.hidden = true;
     }
     this.#islands.refresh();
@@ -120,11 +124,15 @@ export class WorldsPanel implements Panel {
   }
 
   #ask_fork(): void {
-    const world = this.#context.world(), why = this.#context.server.access.why_not("fork_world");
+    const world = this.#context.world(), why = this.#context.server.access.why_not("fork_world", world.shown);
     if (why || !world.snapshot) {
       this.#context.notify(
         why || common_texts.no_world,
-        () => why === "" ? !this.#context.world().snapshot : this.#context.server.access.why_not("fork_world") === why);
+        () => why === "" ? !world.snapshot : this.#context.server.access.why_not("fork_world", world.shown) === why);
+      return;
+    }
+    if (world.info?.class) { // the rules of classes determine the name
+      void this.#context.fork();
       return;
     }
     set_text(this.#fork_from, texts.fork_from(world.shown, world.snapshot.generation, world.feed.tick));

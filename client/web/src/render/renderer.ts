@@ -12,7 +12,7 @@ import type {Surface} from "./scene";
 import {island_place, tile_places} from "./tiles";
 
 /** The surface of a canvas; on_restored: called with another one after the browser has restored a lost context. */
-function surface_of(canvas: OffscreenCanvas, on_restored: (surface: Surface|null) => void): Surface {
+export function surface_of(canvas: OffscreenCanvas, on_restored: (surface: Surface|null) => void): Surface {
   const gl = canvas.getContext("webgl2", {alpha: false, antialias: false, depth: false, stencil: false});
   if (gl === null) { // the page gives no canvas to the worker if WebGL2 is missing
     throw new Error("this browser offers no WebGL2 in a worker");
@@ -164,7 +164,7 @@ export class Renderer {
 }
 
 /** Tiles show no details, and colours only for what is known of all islands. */
-function look_of_tiles(look: Look): Look {
+export function look_of_tiles(look: Look): Look {
   return {...look, colour_by: look.colour_by === "health" ? "health" : "", minimap: false};
 }
 

@@ -43,13 +43,20 @@ export function tile_places(canvas: Size, count: number, aspect: number): Rectan
 
 /** The place of the island in a tile: below its label. */
 export function island_place({left, top, width, height}: Rectangle, ratio: number): Place {
-  const island = {left, top: top + label_pixels, width, height: height - label_pixels};
+  return tile_place({left, top: top + label_pixels, width, height: height - label_pixels}, ratio);
+}
+
+/** The place of an island that is shown as a tile without a label. */
+export function tile_place({left, top, width, height}: Rectangle, ratio: number): Place {
   return {
-    ...island,
+    left,
+    top,
+    width,
+    height,
     ratio,
     frame: tile_frame,
     is_tile: true,
-    has_details: Math.min(island.width, island.height) >= details_pixels
+    has_details: Math.min(width, height) >= details_pixels
   };
 }
 

@@ -1,4 +1,5 @@
 // What people read in the column above the panels: the world, what its organisms try to do, the marks, taking part.
+import type {Membership} from "../core/protocol";
 
 export const column_texts = {
   name: "Controls and panels",
@@ -21,6 +22,8 @@ export const column_texts = {
   take_part: "Take part",
   only_watch: "Only watch",
   no_connection: "There is no connection.",
+  is_member: ({name = "", class: of_class = "", teacher = ""}: Membership) =>
+    `You are ${name} in ${of_class}${teacher && `, teacher ${teacher}`}.`,
   is_viewer: "You are a viewer: read-only.",
   takes_part: "You take part: changes act for everyone.",
   watches: (has_bodies: boolean) => `to run${has_bodies ? ", feed" : ""} and change this world.`,

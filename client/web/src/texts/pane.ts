@@ -7,6 +7,7 @@ function organisms(count: number): string {
 }
 
 export const pane_texts = {
+  frozen: "frozen",
   kind: "island",
   shown: "Shown worlds",
   no_webgl: "This browser cannot draw the island, because it has no WebGL 2, or WebGL 2 is switched off. " +

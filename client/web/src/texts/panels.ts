@@ -2,6 +2,7 @@
 export const panels_texts = {
   worlds: "Worlds",
   run: "Run",
+  parameters: "Parameters",
   view: "View",
   organism: "Organism",
   glass_box: "Glass box",
@@ -9,6 +10,7 @@ export const panels_texts = {
   plots: "Plots",
   physics: "Physics",
   freezer: "Freezer",
+  class: "Class",
   loading: "Loading …",
   not_loaded: (why: string) => `The panel cannot be loaded: ${why}.`,
 };

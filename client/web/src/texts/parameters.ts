@@ -20,7 +20,6 @@ export const effect_texts: {readonly[effect in ParameterEffect]?: {word: string;
 };
 
 export const parameters_texts = {
-  title: "Parameters",
   apply: "Apply",
   plan: "Plan",
   discard: "Discard",

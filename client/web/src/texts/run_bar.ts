@@ -12,6 +12,7 @@ export const run_bar_texts = {
   live: "Live",
   live_help: "Returns to the live world (P).",
   fork: "Fork",
+  what_if: "What if?",
   fork_help: "Creates a world that starts from the tick shown, and shows it next to this one.",
   create: "New …",
   create_help: "Creates a world, in addition to those that exist.",

@@ -22,6 +22,8 @@ export const column_texts: typeof english.column_texts = {
   take_part: "Mitmachen",
   only_watch: "Nur zusehen",
   no_connection: "Es besteht keine Verbindung.",
+  is_member: ({name = "", class: of_class = "", teacher = ""}) =>
+    `Du bist ${name} in ${of_class}${teacher && `, Lehrkraft ${teacher}`}.`,
   is_viewer: "Zuschauer: ohne Änderungen.",
   takes_part: "Mitmachen ist an: Änderungen wirken für alle.",
   watches: (has_bodies) => `zum Starten${has_bodies ? ", Füttern" : ""} und Ändern dieser Welt.`,

@@ -10,6 +10,7 @@ function alive_organisms(count: number): string {
 }
 
 export const pane_texts: typeof english.pane_texts = {
+  frozen: "angehalten",
   kind: "Insel",
   shown: "Gezeigte Welten",
   no_webgl: "Dieser Browser kann die Insel nicht zeichnen, weil WebGL 2 fehlt oder ausgeschaltet ist. Die Bereiche " +

@@ -4,6 +4,7 @@ import type * as english from "../texts/panels";
 export const panels_texts: typeof english.panels_texts = {
   worlds: "Welten",
   run: "Lauf",
+  parameters: "Parameter",
   view: "Ansicht",
   organism: "Organismus",
   glass_box: "Glaskasten",
@@ -11,6 +12,7 @@ export const panels_texts: typeof english.panels_texts = {
   plots: "Diagramme",
   physics: "Physik",
   freezer: "Gefrierfach",
+  class: "Klasse",
   loading: "Wird geladen …",
   not_loaded: (why) => `Der Bereich kann nicht geladen werden: ${why}.`,
 };

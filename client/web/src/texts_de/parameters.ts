@@ -18,7 +18,6 @@ export const effect_texts: typeof english.effect_texts = {
 };
 
 export const parameters_texts: typeof english.parameters_texts = {
-  title: "Parameter",
   apply: "Anwenden",
   plan: "Planen",
   discard: "Verwerfen",

@@ -61,6 +61,17 @@ const sentences: {readonly[reason in Reason]?: string} = {
   REASON_TOKEN_REVOKED: "Dieses Token gilt nicht mehr",
   REASON_LOGIN_TOO_SOON: "Zu viele Versuche mit falschem Token: Etwas warten",
   REASON_AUTHENTICATION_UNAVAILABLE: "Der Server kann seine Tokens nicht lesen",
+  REASON_WORLD_FROZEN: "Die Lehrkraft hat die Klasse angehalten: Bitte warten",
+  REASON_OWNER_WORLDS_MAX: "Es gibt schon so viele eigene Welten wie erlaubt: Zuerst eine löschen",
+  REASON_CLASS_NOT_FOUND: "Diese Klasse gibt es nicht",
+  REASON_CLASS_EXISTS: "Eine Klasse mit diesem Namen gibt es schon",
+  REASON_MEMBER_NOT_FOUND: "Dieses Mitglied gibt es nicht",
+  REASON_MEMBERS_MAX: "Die Klasse ist voll",
+  REASON_CLASSES_MAX: "Es gibt schon so viele Klassen wie erlaubt: Zuerst eine löschen",
+  REASON_CODE_UNKNOWN: "Diesen Code hat keine offene Klasse",
+  REASON_MEMBER_NAME_TAKEN: "Diesen Namen hat schon jemand",
+  REASON_MEMBER_REMOVED: "Die Lehrkraft hat dieses Mitglied aus der Klasse entfernt",
+  REASON_JOINS_TOO_FAST: "Zu viele unbekannte Codes: Etwas warten",
   REASON_SESSIONS_MAX: "Der Server hat schon so viele Verbindungen wie erlaubt",
 };
 

@@ -14,6 +14,7 @@ export const run_bar_texts: typeof english.run_bar_texts = {
   live: "Live",
   live_help: "Kehrt zur laufenden Welt zurück (P).",
   fork: "Abzweigen",
+  what_if: "Was wäre, wenn?",
   fork_help: "Erzeugt eine Welt, die beim gezeigten Tick beginnt, und zeigt sie neben dieser.",
   create: "Neu …",
   create_help: "Erzeugt eine weitere Welt.",

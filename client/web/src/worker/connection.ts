@@ -8,6 +8,7 @@
 import {ClientCore} from "../core/client_core";
 import type {CoreEvent} from "../core/core_session";
 import type {ConnectionState} from "../core/messages";
+import type {Join} from "../core/protocol";
 import {reason_text} from "../texts/refusals";
 import {worker_texts} from "../texts/worker";
 import type {Timings} from "./timings";
@@ -45,7 +46,7 @@ export class Connection {
   }
 
   /** Replaces the present session by one that open() begins. */
-  begin(url: string, token: string, descriptor: Uint8Array): ClientCore {
+  begin(url: string, token: string, join: Join|null, descriptor: Uint8Array): ClientCore {
     clearTimeout(this.#attempt);
     if (this.core) {
       const ended = this.core;
@@ -56,7 +57,7 @@ export class Connection {
     this.#socket = null;
     this.#url = url;
     this.#backoff_ms = backoff_min_ms;
-    return (this.core = new ClientCore(descriptor, {client_name, token, server: this.#host}));
+    return (this.core = new ClientCore(descriptor, {client_name, token, join, server: this.#host}));
   }
 
   open(): void {
@@ -102,7 +103,7 @@ export class Connection {
   /** The core has reported a session. */
   opened(): void {
     this.#backoff_ms = backoff_min_ms;
-    this.#report("open", "", "");
+    this.#report("open", "", "", "");
   }
 
   /** Ends the connection, and tries again unless the core has failed. */
@@ -115,7 +116,8 @@ export class Connection {
     const {failed} = core;
     const events = core.lost({message, code});
     this.#report(
-      failed ? "refused" : "lost", reason_text(failed?.reason) || (failed?.message ?? message), failed?.code ?? code);
+      failed ? "refused" : "lost", reason_text(failed?.reason) || (failed?.message ?? message), failed?.code ?? code,
+      failed?.reason ?? "");
     this.#listener.take(events); // the page knows why its requests fail
     if (!failed) {
       ++this.#timings.reconnect_count;
@@ -167,13 +169,13 @@ export class Connection {
   #show_silence(seconds: number): void {
     if (seconds !== this.#silent_s) {
       this.#silent_s = seconds;
-      this.#report("open", "", "");
+      this.#report("open", "", "", "");
     }
   }
 
-  #report(phase: ConnectionState["phase"], message: string, code: string): void {
+  #report(phase: ConnectionState["phase"], message: string, code: string, reason: string): void {
     const sentence = message.charAt(0).toUpperCase() + message.slice(1);
     const welcome = this.core?.welcome ?? null;
-    this.#listener.changed({phase, message: sentence, code, silent_s: this.#silent_s, welcome});
+    this.#listener.changed({phase, message: sentence, code, reason, silent_s: this.#silent_s, welcome});
   }
 }

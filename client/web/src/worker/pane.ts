@@ -6,12 +6,14 @@ import type {Snapshot} from "../core/snapshot";
 import {Renderer} from "../render/renderer";
 import type {Connection} from "./connection";
 import {Feed} from "./feed";
+import type {ForWall} from "./wall";
 
 const report_ms = 50, drawing_report_ms = 200, tiles_report_ms = 300; // least time between two messages
 
 /** The messages of the page about one pane. */
-export type ForPane =
-  Exclude<ToWorker, {kind: "connect" | "request" | "events_taken" | "visible" | "ask_figures" | "close_pane"}>;
+export type ForPane = Exclude<ToWorker, {
+  kind: "connect" | "request" | "events_taken" | "visible" | "ask_figures" | "close_pane" | ForWall["kind"]
+}>;
 
 export class WorkerPane {
   readonly feed: Feed;

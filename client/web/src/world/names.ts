@@ -1,5 +1,6 @@
 // names: the names of worlds and of what the user keeps, and whether organisms have the genes of a world.
 // Pure functions.
+import type {WorldInfo} from "../core/protocol";
 import {name_texts} from "../texts/names";
 
 export const name_characters_max = 64;
@@ -19,6 +20,19 @@ export function unused_name(base: string, used: readonly string[]): string {
     const end = `-${number}`, name = stem.slice(0, name_characters_max - end.length) + end;
     if (!used.includes(name)) {
       return name;
+    }
+  }
+}
+
+/** The name of a fork: "default-2". In a class it begins with the class and the member: "bio2_red-fox_2". */
+export function fork_name({name = "", class: of_class = ""}: WorldInfo, used: readonly string[]): string {
+  if (of_class === "") {
+    return unused_name(name, used);
+  }
+  const stem = name.split("_").slice(0, 2).join("_");
+  for (let number = 2;; ++number) {
+    if (!used.includes(`${stem}_${number}`)) {
+      return `${stem}_${number}`;
     }
   }
 }

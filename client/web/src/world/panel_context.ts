@@ -21,6 +21,8 @@ export interface PanelContext {
   fork(name?: string): Promise<void>;
   /** Opens a panel by its name, with a subject: open("glass box", {generation: 3, organism: 7}). */
   open(panel: string, subject?: {[key: string]: unknown}): void;
+  /** Shows the wall of a class. */
+  open_class(name: string): void;
   /** Lets each click in the focused island place a copy of the model. Returns whether it still does, as a
    *  function; null if it cannot, and a message says why. */
   place_by_clicks(model: PlacedModel): (() => boolean)|null;

@@ -33,7 +33,8 @@ export class EditedParameter {
   client_of_last_change = ""; // empty: no other client has changed it since the value was received or set here
   violation: Violation|null = null; // why the server rejected the value that was sent last; null if it accepted it
 
-  constructor(readonly about: ParameterDescription) {
+  /** about: of the registry; then with the range of the world, where that is narrower. */
+  constructor(public about: ParameterDescription) {
     this.value = about.default_value ?? {};
   }
 
@@ -100,6 +101,7 @@ export class ParameterEdits {
     }
     for (const state of set.parameters ?? []) {
       this.#take(state);
+      this.#narrow(state);
     }
     this.planned = set.planned ?? [];
     this.schedule = set.schedule ?? [];
@@ -128,6 +130,15 @@ export class ParameterEdits {
     state.client_of_last_change = client ?? state.client_of_last_change;
     if (state.edit && same(state.edit, state.requested)) {
       state.edit = state.violation = null;
+    }
+  }
+
+  /** Takes the range that the quota of a class allows. */
+  #narrow({name = "", min, max}: ParameterState): void {
+    const i = this.#index.get(name) ?? -1, about = this.registry[i];
+    if (about) {
+      this.parameters[i]!.about =
+        min === undefined && max === undefined ? about : {...about, min: min ?? about.min, max: max ?? about.max};
     }
   }
 

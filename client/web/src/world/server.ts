@@ -10,8 +10,7 @@ import {Worlds} from "./worlds";
 
 import type {ConnectionState, FromWorker, RequestKind, ToWorker} from "../core/messages";
 import type * as protocol from "../core/protocol";
-import type {
-  Answers, Event, ParameterDescription, RequestKinds, Response, Status, Storage} from "../core/protocol";
+import type {Answers, Event, ParameterDescription, RequestKinds, Response, Status, Storage} from "../core/protocol";
 
 /** A wrong field of a request. */
 export type Violation = Required<protocol.Violation>;
@@ -30,7 +29,7 @@ type Waiting = {
 };
 
 export class Server {
-  state: ConnectionState = {phase: "connecting", message: "", code: "", silent_s: 0, welcome: null};
+  state: ConnectionState = {phase: "connecting", message: "", code: "", reason: "", silent_s: 0, welcome: null};
   /** The registry, in order. Empty until the session is open. */
   parameters: ParameterDescription[] = [];
   features: ReadonlySet<string> = new Set();
@@ -45,8 +44,7 @@ export class Server {
   readonly events = new Listeners<Event>();
   readonly messages = new Listeners<FromWorker>(); // of the worker
   readonly worlds = new Worlds(() => this.changes.notify());
-  readonly access =
-    new Access(() => this.state, (world) => this.worlds.is_own_replay(world), () => this.changes.notify());
+  readonly access = new Access(() => this.state, this.worlds, () => this.changes.notify());
 
   #worker: Worker;
   #last_id = 0;
@@ -54,6 +52,7 @@ export class Server {
   #sent_ms = new Map<string, number>(); // when commands were sent last, by kind and world
   #first_version = "";
   #instance = "";
+  #joins = false;
 
   /** descriptor: the serialised FileDescriptorSet of the protocol. */
   readonly #descriptor: ArrayBuffer;
@@ -66,10 +65,17 @@ export class Server {
     worker.addEventListener("message", (event: MessageEvent<FromWorker>) => this.#take(event.data));
   }
 
-  connect(token: string): void {
-    this.state = {phase: "connecting", message: "", code: "", silent_s: 0, welcome: this.state.welcome};
-    this.post({kind: "connect", url: this.#url, token, descriptor: this.#descriptor.slice(0)});
+  /** join: instead of a token: as a member of a class. */
+  connect(token: string, join: protocol.Join|null = null): void {
+    this.state = {phase: "connecting", message: "", code: "", reason: "", silent_s: 0, welcome: this.state.welcome};
+    this.#joins = join !== null;
+    this.post({kind: "connect", url: this.#url, token, join, descriptor: this.#descriptor.slice(0)});
     this.changes.notify();
+  }
+
+  /** Whether the page tries to become a member of a class, or has become one in this session. */
+  get is_joining(): boolean {
+    return this.#joins;
   }
 
   post(message: ToWorker, transfer: Transferable[] = []): void {
@@ -156,6 +162,7 @@ export class Server {
       const version = state.welcome.server_version ?? "";
       this.#first_version ||= version;
       this.updated = version !== this.#first_version;
+      this.worlds.show_only_of(state.welcome.membership ? state.welcome.user ?? "" : null);
       void this.#open(state.welcome.instance_id ?? "");
     }
     this.changes.notify();
@@ -163,6 +170,7 @@ export class Server {
 
   async #open(instance: string): Promise<void> {
     const list = this.refresh_worlds();
+    void this.#read_classes();
     try {
       if (instance !== this.#instance) {
         const description = await this.request("describe", {});
@@ -174,6 +182,19 @@ export class Server {
     }
     await list;
     this.changes.notify();
+  }
+
+  /** Reads which classes the teacher has. */
+  async #read_classes(): Promise<void> {
+    if (this.access.role === "ROLE_TEACHER") {
+      try {
+        const {classes = []} = await this.request("list_classes", {});
+        this.access.classes = new Set(classes.map(({name = ""}) => name));
+        this.changes.notify();
+      } catch {
+        // The session ended; the next one asks again.
+      }
+    }
   }
 
   #take_response(waiting: Waiting, response: Response): void {
@@ -193,7 +214,16 @@ export class Server {
   }
 
   #take_event(event: Event): void {
+    if (this.worlds.hides(event.world ?? "")) {
+      return;
+    }
     this.worlds.take_event(event);
+    if (this.worlds.hides(event.world ?? "")) {
+      return; // another user has created it
+    }
+    if (event.class_changed && !this.access.classes.has(event.class_changed.class ?? "")) {
+      void this.#read_classes();
+    }
     if (event.storage_changed && !event.world) {
       this.storage = event.storage_changed.storage ?? null;
       this.changes.notify();
@@ -208,7 +238,6 @@ export class Server {
 }
 
 function refusal_of(status: Status): Refusal {
-  const violations =
-    (status.violations ?? []).map(({field = "", allowed = "", got = ""}) => ({field, allowed, got}));
+  const violations = (status.violations ?? []).map(({field = "", allowed = "", got = ""}) => ({field, allowed, got}));
   return new Refusal(refusal_text(status), status.code ?? "", status.reason ?? "", violations);
 }

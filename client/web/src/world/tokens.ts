@@ -54,8 +54,11 @@ export class Tokens {
     this.offered = null;
   }
 
-  /** A session has begun. */
-  opened(): void {
+  /** A session has begun. token: the one of a new member of a class; empty: the session needs no other one. */
+  opened(token = ""): void {
+    if (token !== "") {
+      this.use(token);
+    }
     this.#working = this.used;
   }
 

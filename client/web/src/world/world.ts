@@ -236,6 +236,8 @@ export class ViewedWorld {
       case "storage_changed":
       case "removed":
       case "fitness_awaited":
+      case "class_changed":
+      case "note_added":
       case undefined:
         break;
       default:

@@ -16,11 +16,30 @@ export class Worlds {
   damaged: (DamagedWorld&{name: string})[] = [];
   /** Whether the list of worlds of the present session has arrived. */
   are_known = false;
+  #only_of: string|null = null; // only the worlds of this user are listed; null: all
+  #hidden = new Set<string>(); // names of the worlds of other users
   #replays = new Set<string>(); // names of the replays that this session has opened
   readonly #on_change: () => void;
 
   constructor(on_change: () => void) {
     this.#on_change = on_change;
+  }
+
+  /** Lists only the worlds of this user; null: all. */
+  show_only_of(user: string|null): void {
+    this.#only_of = user;
+  }
+
+  /** Whether a world belongs to another user and is not listed. */
+  hides(name: string): boolean {
+    return this.#hidden.has(name);
+  }
+
+  #is_listed(world: WorldInfo): boolean {
+    const listed =
+      this.#only_of === null || (world.owner ?? "") === this.#only_of || this.#replays.has(world.name ?? "");
+    this.#hidden[listed ? "delete" : "add"](world.name ?? "");
+    return listed;
   }
 
   find(name: string): KnownWorld|null {
@@ -37,6 +56,11 @@ export class Worlds {
     return [...this.all.filter((world) => !world.replay), ...this.damaged].map((world) => world.name).sort();
   }
 
+  /** The names that a new world cannot have. */
+  get taken_names(): string[] {
+    return [...this.names, ...this.#hidden];
+  }
+
   is_own_replay(name: string): boolean {
     return this.#replays.has(name);
   }
@@ -49,18 +73,21 @@ export class Worlds {
 
   take_list({worlds = [], damaged = []}: WorldList): void {
     const replays = this.all.filter((world) => this.#replays.has(world.name));
-    this.all = [
-      ...worlds.map(known_world),
-      ...replays.filter((replay) => !worlds.some((world) => world.name === replay.name))
-    ];
+    this.#hidden.clear();
+    const listed = worlds.filter((world) => this.#is_listed(world));
+    this.all =
+      [...listed.map(known_world), ...replays.filter((replay) => !worlds.some((world) => world.name === replay.name))];
     this.#sort();
-    this.damaged = damaged.map((world) => ({name: "", ...world}));
+    this.damaged = this.#only_of === null ? damaged.map((world) => ({name: "", ...world})) : [];
     this.are_known = true;
     this.#on_change();
   }
 
   /** Takes a WorldInfo unless a newer one of the same run is known. An event about a command may arrive late. */
   put(world: WorldInfo): void {
+    if (!this.#is_listed(world)) {
+      return;
+    }
     const info = known_world(world);
     const known = this.find(info.name);
     if (known && known.run_id === info.run_id && !info.replay && known.tick > info.tick) {
@@ -125,6 +152,8 @@ export class Worlds {
       case "placed":
       case "removed":
       case "fitness_set":
+      case "class_changed":
+      case "note_added":
       case undefined:
         return;
       default:
