@@ -16,11 +16,12 @@ from evod.v1 import commands_pb2 as c, session_pb2, world_pb2 as w
 
 
 class Client:
-    def __init__(self, port):
+    def __init__(self, port, **hello):
         self.socket = socket.create_connection(("127.0.0.1", port))
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.key, self.id = secrets.token_hex(8), 0
-        self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="benchmark")))
+        self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(
+            protocol_version=1, client_name="benchmark", **hello)))
         self.welcome = session_pb2.ServerMessage.FromString(bytes(self.frame()[1])).welcome
 
     def send(self, message):
