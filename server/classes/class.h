@@ -10,6 +10,7 @@
 #pragma once
 
 #include "server/access/token_file.h"
+#include "server/simulation/class_rules.h"
 
 #include <cstdint>
 #include <functional>
@@ -23,28 +24,24 @@ namespace evod::classes {
 using access::Digest;
 
 constexpr std::size_t classes_max = 16;
-constexpr std::size_t members_max = 64;              // of a class, with those who were removed
+constexpr std::size_t members_max = 64; // of a class, with those who were removed
 constexpr std::size_t class_name_bytes_max = 24;
 constexpr std::size_t member_name_characters_max = 24;
-constexpr std::size_t member_sessions_max = 3;       // of one member; the oldest ends
+constexpr std::size_t member_sessions_max = 3;                 // of one member; the oldest ends
 constexpr std::size_t member_tokens_max = member_sessions_max; // of one member; the oldest is forgotten
 constexpr std::size_t lesson_name_bytes_max = 64;
 constexpr std::uint32_t member_worlds_least = 1, member_worlds_most = 8, member_worlds_by_default = 3;
 constexpr std::int64_t code_valid_s = 20 * 60;
 
 /// A narrower range of a numeric parameter in the worlds of a class.
-struct Range {
-    std::string parameter;
-    double min = 0, max = 0;
-    friend bool operator==(const Range&, const Range&) = default;
-};
+using Range = simulation::ParameterRange;
 
 struct Member {
-    std::uint32_t number = 0; // from 1; never used again in the class
-    std::string name;         // as the member or the server chose it
-    std::string slug;         // made from the first name; part of the names of its user and world
-    bool removed = false;     // by the teacher
-    bool joined = false;      // the member has connected at least once
+    std::uint32_t number = 0;        // from 1; never used again in the class
+    std::string name;                // as the member or the server chose it
+    std::string slug;                // made from the first name; part of the names of its user and world
+    bool removed = false;            // by the teacher
+    bool joined = false;             // the member has connected at least once
     std::vector<Digest> tokens = {}; // at most member_tokens_max, oldest first
     std::optional<Digest> personal_code = {};
     friend bool operator==(const Member&, const Member&) = default;
@@ -58,15 +55,15 @@ struct JoinCode {
 };
 
 struct Class {
-    std::string name, teacher; // teacher: a user; empty: a client without a token
+    std::string name, teacher;         // teacher: a user; empty: a client without a token
     std::optional<JoinCode> code = {}; // nullopt: the class is locked
     bool frozen = false;
     std::string world_template; // a serialised v1::CreateWorld with a seed and without a name
     bool own_seeds = false;     // each member's world has a seed of its own
     std::vector<Range> ranges = {};
     std::uint32_t member_worlds_max = member_worlds_by_default;
-    std::string lesson = {}; // empty: none
-    std::uint32_t last_number = 0; // of a member
+    std::string lesson = {};          // empty: none
+    std::uint32_t last_number = 0;    // of a member
     std::vector<Member> members = {}; // ordered by number
     friend bool operator==(const Class&, const Class&) = default;
 };

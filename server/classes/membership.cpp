@@ -37,9 +37,8 @@ std::optional<Found> find_member(const Classes& classes, const IsOne& is_one) {
 
 bool is_taken(const Class& of, const std::string& name, const Member* except) {
     const std::string wanted = folded(name);
-    return std::ranges::any_of(of.members, [&](const Member& other) {
-        return &other != except && folded(other.name) == wanted;
-    });
+    return std::ranges::any_of(of.members,
+                               [&](const Member& other) { return &other != except && folded(other.name) == wanted; });
 }
 
 base::Refusal taken(const Class& of, const std::string& name, const std::string& field) {
@@ -93,8 +92,8 @@ std::optional<Found> find_by_token(const Classes& classes, std::string_view toke
 
 std::optional<Found> find_by_personal_code(const Classes& classes, std::string_view code) {
     const Digest digest = access::digest_of(code);
-    return find_member(classes,
-                       [&](const Member& member) { return member.personal_code && same(*member.personal_code, digest); });
+    return find_member(
+        classes, [&](const Member& member) { return member.personal_code && same(*member.personal_code, digest); });
 }
 
 const Class* find_by_code(const Classes& classes, std::string_view code, std::int64_t now_s) {
@@ -131,9 +130,9 @@ Result<Member*> add_member(Class& of, std::string_view name, const std::string& 
         return cleaned.error();
     }
     if (of.members.size() >= members_max) {
-        base::Refusal full =
-            base::limit_refusal("the class has " + std::to_string(members_max) + " members, as many as a class can have",
-                                Reason::MembersMax, "class_members_max", of.members.size(), members_max);
+        base::Refusal full = base::limit_refusal(
+            "the class has " + std::to_string(members_max) + " members, as many as a class can have",
+            Reason::MembersMax, "class_members_max", of.members.size(), members_max);
         full.arguments.push_back({"class", of.name});
         return full;
     }

@@ -15,19 +15,21 @@ namespace {
 // Words that a child may carry before the class: no judgement, no colour of skin, no animal that is an insult in English
 // or German.
 constexpr std::array<std::string_view, words_of_a_kind> adjectives = {
-    "red",    "blue",   "green",  "golden", "silver", "orange", "violet", "amber",  "coral",  "copper", "indigo",
-    "pearl",  "ruby",   "jade",   "mint",   "royal",  "sunny",  "windy",  "snowy",  "misty",  "starry", "lunar",
-    "solar",  "polar",  "brave",  "bright", "calm",   "clever", "cosmic", "daring", "eager",  "early",  "fair",
-    "famous", "fast",   "fine",   "fresh",  "gentle", "glad",   "grand",  "happy",  "honest", "jolly",  "keen",
-    "kind",   "lively", "lucky",  "magic",  "merry",  "mighty", "modern", "noble",  "proud",  "quick",  "quiet",
-    "rapid",  "ready",  "smart",  "smooth", "steady", "strong", "swift",  "tidy",   "warm"};
+    "red",    "blue",   "green", "golden", "silver", "orange", "violet", "amber",  "coral",  "copper", "indigo",
+    "pearl",  "ruby",   "jade",  "mint",   "royal",  "sunny",  "windy",  "snowy",  "misty",  "starry", "lunar",
+    "solar",  "polar",  "brave", "bright", "calm",   "clever", "cosmic", "daring", "eager",  "early",  "fair",
+    "famous", "fast",   "fine",  "fresh",  "gentle", "glad",   "grand",  "happy",  "honest", "jolly",  "keen",
+    "kind",   "lively", "lucky", "magic",  "merry",  "mighty", "modern", "noble",  "proud",  "quick",  "quiet",
+    "rapid",  "ready",  "smart", "smooth", "steady", "strong", "swift",  "tidy",   "warm"};
 constexpr std::array<std::string_view, words_of_a_kind> animals = {
-    "fox",    "otter",   "lynx",    "badger",  "beaver", "hare",    "squirrel", "hedgehog", "marten", "deer",   "elk",
-    "bison",  "moose",   "wolf",    "bear",    "panda",  "koala",   "tiger",    "lion",     "puma",   "jaguar", "cheetah",
-    "zebra",  "giraffe", "gazelle", "antelope", "dolphin", "seal",  "walrus",   "penguin",  "puffin", "heron",  "crane",
-    "stork",  "swan",    "robin",   "wren",    "finch",  "lark",    "kestrel",  "falcon",   "hawk",   "eagle",  "owl",
-    "raven",  "magpie",  "kiwi",    "toucan",  "parrot", "ibis",    "salmon",   "trout",    "turtle", "gecko",  "newt",
-    "frog",   "dragonfly", "beetle", "cricket", "firefly", "ladybird", "bumblebee", "butterfly", "starfish"};
+    "fox",       "otter",    "lynx",    "badger",  "beaver",   "hare",      "squirrel",  "hedgehog",
+    "marten",    "deer",     "elk",     "bison",   "moose",    "wolf",      "bear",      "panda",
+    "koala",     "tiger",    "lion",    "puma",    "jaguar",   "cheetah",   "zebra",     "giraffe",
+    "gazelle",   "antelope", "dolphin", "seal",    "walrus",   "penguin",   "puffin",    "heron",
+    "crane",     "stork",    "swan",    "robin",   "wren",     "finch",     "lark",      "kestrel",
+    "falcon",    "hawk",     "eagle",   "owl",     "raven",    "magpie",    "kiwi",      "toucan",
+    "parrot",    "ibis",     "salmon",  "trout",   "turtle",   "gecko",     "newt",      "frog",
+    "dragonfly", "beetle",   "cricket", "firefly", "ladybird", "bumblebee", "butterfly", "starfish"};
 
 /// Reads the code points of a text. Returns nullopt if it is not valid UTF-8.
 std::optional<std::vector<char32_t>> code_points(std::string_view utf8) {
@@ -83,12 +85,12 @@ constexpr char32_t ideographic_space = 0x3000;
 
 // Characters that control, that change the direction of text, or that show nothing (Unicode's Default_Ignorable), and
 // those without a meaning of their own (private use).
-constexpr std::array<Points, 24> unfit = {{{0, 0x1f},         {0x7f, 0x9f},       {0xad, 0xad},       {0x34f, 0x34f},
-                                           {0x61c, 0x61c},    {0x115f, 0x1160},   {0x17b4, 0x17b5},   {0x180b, 0x180f},
-                                           {0x200b, 0x200f},  {0x2028, 0x202e},   {0x2060, 0x206f},   {0x2800, 0x2800},
-                                           {0x3164, 0x3164},  {0xe000, 0xf8ff},   {0xfdd0, 0xfdef},   {0xfe00, 0xfe0f},
-                                           {0xfeff, 0xfeff},  {0xffa0, 0xffa0},   {0xfff0, 0xfffb},   {0xfffe, 0xffff},
-                                           {0x1bca0, 0x1bca3}, {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}, {0xf0000, 0x10ffff}}};
+constexpr std::array<Points, 24> unfit = {
+    {{0, 0x1f},          {0x7f, 0x9f},       {0xad, 0xad},       {0x34f, 0x34f},     {0x61c, 0x61c},
+     {0x115f, 0x1160},   {0x17b4, 0x17b5},   {0x180b, 0x180f},   {0x200b, 0x200f},   {0x2028, 0x202e},
+     {0x2060, 0x206f},   {0x2800, 0x2800},   {0x3164, 0x3164},   {0xe000, 0xf8ff},   {0xfdd0, 0xfdef},
+     {0xfe00, 0xfe0f},   {0xfeff, 0xfeff},   {0xffa0, 0xffa0},   {0xfff0, 0xfffb},   {0xfffe, 0xffff},
+     {0x1bca0, 0x1bca3}, {0x1d173, 0x1d17a}, {0xe0000, 0xe0fff}, {0xf0000, 0x10ffff}}};
 
 char32_t lower_case_of(char32_t point) {
     const auto is = [&](char32_t first, char32_t last) { return first <= point && point <= last; };
@@ -110,8 +112,8 @@ char32_t lower_case_of(char32_t point) {
 
 /// Letters of the Latin-1 range as people write them without accents, from U+00DF.
 constexpr std::array<std::string_view, 33> plain_letters = {
-    "ss", "a", "a", "a", "a", "ae", "a", "ae", "c", "e", "e", "e", "e", "i", "i", "i", "i",
-    "d",  "n", "o", "o", "o", "o",  "oe", "",  "oe", "u", "u", "u", "ue", "y", "th", "y"};
+    "ss", "a", "a", "a", "a", "ae", "a",  "ae", "c",  "e", "e", "e", "e",  "i", "i",  "i", "i",
+    "d",  "n", "o", "o", "o", "o",  "oe", "",   "oe", "u", "u", "u", "ue", "y", "th", "y"};
 
 } // namespace
 

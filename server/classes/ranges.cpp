@@ -3,12 +3,12 @@
 #include "proto/text/number_text.h"
 #include "proto/text/suggestion.h"
 #include "server/base/assert.h"
-#include "server/base/overloaded.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -34,14 +34,6 @@ bool is_count(const ParameterDescription& parameter) {
     return std::holds_alternative<parameters::CountParameter>(parameter.kind);
 }
 
-/// The value as a number; nullopt: it is of another kind.
-std::optional<double> number_of(const parameters::ParameterValue& value) {
-    return std::visit(base::Overloaded{[](double number) { return std::optional{number}; },
-                                       [](std::uint32_t number) { return std::optional<double>{number}; },
-                                       [](const auto&) { return std::optional<double>{}; }},
-                      value);
-}
-
 std::string allowed_of(const Range& range, bool whole) {
     const auto text_of = [](double value) { return number_text(value, text::Exponent::Never); };
     return (whole ? "a whole number, " : "") + text_of(range.min) + " to " + text_of(range.max);
@@ -64,10 +56,11 @@ const std::vector<Range>& default_ranges() {
         // Together: at most 4,000 organisms with 106 genes, and with scale_with_population ten times as many items as
         // the ranges of food and poison say.
         const std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> limits = {
-            {"population_size", {{}, 500}},     {"island_count", {{}, 8}},  {"island_width_px", {{}, 4000}},
-            {"island_height_px", {{}, 4000}},   {"food_count", {{}, 2000}}, {"poison_count", {{}, 2000}},
-            {"reference_population", {50, {}}}, {"free_genes", {{}, 100}},  {"generation_s", {1, {}}},
-            {"tick_s", {0.004, {}}}};
+            {"population_size", {{}, 500}},     {"island_count", {{}, 8}},
+            {"island_width_px", {{}, 4000}},    {"island_height_px", {{}, 4000}},
+            {"food_count", {{}, 2000}},         {"poison_count", {{}, 2000}},
+            {"reference_population", {50, {}}}, {"free_genes", {{}, 100}},
+            {"generation_s", {1, {}}},          {"tick_s", {0.004, {}}}};
         std::map<std::string, Range> ranges;
         for (const auto& [name, limit] : limits) {
             const ParameterDescription* parameter = parameters::find_parameter(name);
@@ -85,8 +78,8 @@ std::vector<Range> ranges_of(const v1::QuotaRanges& request, const std::string& 
                              std::vector<base::Violation>& violations) {
     const std::size_t most = parameters::parameter_registry().size();
     if (static_cast<std::size_t>(request.ranges_size()) > most) {
-        violations.push_back({path, "at most " + std::to_string(most) + ", each parameter once",
-                              std::to_string(request.ranges_size())});
+        violations.push_back(
+            {path, "at most " + std::to_string(most) + ", each parameter once", std::to_string(request.ranges_size())});
         return default_ranges();
     }
     std::map<std::string, Range> ranges;
@@ -139,23 +132,19 @@ v1::QuotaRanges to_proto(const std::vector<Range>& ranges) {
 void check_ranges(const std::vector<Range>& ranges, const parameters::Parameters& parameters,
                   const parameters::Schedule& schedule, const std::string& class_name, const std::string& path,
                   std::vector<base::Violation>& violations) {
+    const simulation::ClassRules rules{.frozen = false, .ranges = ranges, .worlds_per_member = 1};
+    const auto check = [&](std::span<const parameters::Assignment> assignments, const std::string& prefix) {
+        const auto found = simulation::values_outside(rules, class_name, assignments, prefix);
+        violations.insert(violations.end(), found.begin(), found.end());
+    };
+    std::vector<parameters::Assignment> first;
     for (const Range& range : ranges) {
-        const ParameterDescription& parameter = *parameters::find_parameter(range.parameter);
-        const std::string allowed = allowed_of(range, false) + " (class " + class_name + ")";
-        const auto check = [&](const parameters::ParameterValue& value, const std::string& field) {
-            const double number = number_of(value).value_or(range.min);
-            if (number < range.min || number > range.max) {
-                violations.push_back({field, allowed, number_text(number, text::Exponent::Never)});
-            }
-        };
-        check(parameter.get(parameters), path + "." + range.parameter);
-        for (const auto& [generation, assignments] : schedule.changes()) {
-            for (const parameters::Assignment& assignment : assignments) {
-                if (assignment.name == range.parameter && generation > 1) {
-                    check(assignment.value, path + ".schedule." + range.parameter + " (generation " +
-                                                std::to_string(generation) + ")");
-                }
-            }
+        first.push_back({range.parameter, parameters::find_parameter(range.parameter)->get(parameters)});
+    }
+    check(first, path + ".");
+    for (const auto& [generation, assignments] : schedule.changes()) {
+        if (generation > 1) { // generation 1 has the values of `parameters`
+            check(assignments, path + ".schedule.generation " + std::to_string(generation) + ".");
         }
     }
 }

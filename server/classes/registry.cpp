@@ -209,8 +209,9 @@ Result<void> Registry::read() {
         return sound;
     }
     const auto damaged = [&](const std::string& what) {
-        return refusal(RefusalCode::DataLoss, path() + " is damaged: " + what +
-                                                  ": restore it from a backup, or move it away to start without classes");
+        return refusal(RefusalCode::DataLoss,
+                       path() + " is damaged: " + what +
+                           ": restore it from a backup, or move it away to start without classes");
     };
     // Opened for writing, because SQLite must bring in the log that a killed server left.
     Database database{path(), Database::Mode::Write};

@@ -98,6 +98,10 @@ v1::Request creation_of(const Class& of, const Member& member) {
     return request;
 }
 
+simulation::ClassRules rules_of(const Class& of) {
+    return {.frozen = of.frozen, .ranges = of.ranges, .worlds_per_member = of.member_worlds_max};
+}
+
 v1::Response answer_of(std::uint64_t request_id, const v1::ClassInfo& info) {
     v1::Response response = response_to(request_id);
     *response.mutable_class_info() = info;
@@ -120,12 +124,7 @@ ClassRequests::ClassRequests(asio::io_context& context, classes::Registry& regis
 
 void ClassRequests::begin() {
     for (const auto& [name, of] : registry_.classes()) {
-        actions_.set_rules(of);
-        actions_.freeze(name, of.frozen, [](const auto& refused) {
-            if (refused) {
-                log::error("a class cannot be frozen or continued: {}", to_text(*refused));
-            }
-        });
+        actions_.set_class(name, rules_of(of), base::server_actor(), [](const auto&) {});
     }
 }
 
@@ -173,8 +172,7 @@ ClassRequests::Answer ClassRequests::create(const Session& session, const v1::Re
     Violations violations;
     Class of{.name = given.name(), .teacher = session.user().name, .world_template = {}};
     if (!classes::is_class_name(given.name())) {
-        violations.push_back(
-            {"create_class.name", std::string{classes::class_name_allowed}, '"' + given.name() + '"'});
+        violations.push_back({"create_class.name", std::string{classes::class_name_allowed}, '"' + given.name() + '"'});
     }
     if (!v1::ClassSeeds_IsValid(given.seeds())) {
         violations.push_back({"create_class.seeds", "a value of ClassSeeds", std::to_string(given.seeds())});
@@ -204,7 +202,7 @@ ClassRequests::Answer ClassRequests::create(const Session& session, const v1::Re
     }
     log::info({.session = session.number(), .client = session.by()}, "session {}: {} creates class {}",
               session.number(), session.by(), of.name);
-    actions_.set_rules(of);
+    actions_.set_class(of.name, rules_of(of), session.actor(), [](const auto&) {});
     events_.changed(of.name);
     return answer_of(request.request_id(), info_of(of));
 }
@@ -239,26 +237,17 @@ void ClassRequests::update(Session& session, const v1::Request& request) {
     } else if (given.open() || given.new_code()) {
         classes::open(next, given.new_code(), registry_.classes(), services_.now_s(), services_.draw);
     }
-    const bool has_rules = next.ranges != (*there)->ranges || next.member_worlds_max != (*there)->member_worlds_max;
     if (auto stored = registry_.store(next); !stored) {
         return session.answer(protocol::refusing(id, stored.error()));
     }
-    if (has_rules) {
-        actions_.set_rules(next);
-    }
     events_.changed(next.name);
-    if (!given.has_frozen()) {
-        return session.answer(answer_of(id, info_of(next)));
-    }
-    actions_.freeze(next.name, next.frozen, [this, id, name = next.name, weak = session.weak_from_this()](const auto& refused) {
-        const SessionPtr waiting = weak.lock();
-        const Class* of = classes::find(registry_.classes(), name);
-        if (waiting && refused) {
-            waiting->answer(protocol::refusing(id, *refused));
-        } else if (waiting) {
-            waiting->answer(of != nullptr ? answer_of(id, info_of(*of)) : response_to(id));
-        }
-    });
+    actions_.set_class(next.name, rules_of(next), session.actor(),
+                       [this, id, name = next.name, weak = session.weak_from_this()](const auto&) {
+                           const Class* of = classes::find(registry_.classes(), name);
+                           if (const SessionPtr waiting = weak.lock()) {
+                               waiting->answer(of != nullptr ? answer_of(id, info_of(*of)) : response_to(id));
+                           }
+                       });
 }
 
 void ClassRequests::erase(Session& session, const v1::Request& request) {
@@ -280,23 +269,23 @@ void ClassRequests::erase(Session& session, const v1::Request& request) {
     }
     end_sessions(name + "/", refusal(RefusalCode::Unauthenticated, "your teacher has deleted the class",
                                      Reason::MemberRemoved, {{"class", name}}));
-    actions_.worlds_of(*classes::find(registry_.classes(), name), [this, id, name, weak = session.weak_from_this()](
-                                                                       const std::vector<std::string>& worlds) {
-        for (const std::string& world : worlds) {
-            v1::Request command;
-            command.mutable_delete_world()->set_world(world);
-            actions_.send(std::move(command));
-        }
-        const Class* last = classes::find(registry_.classes(), name);
-        const std::optional<Class> before = last != nullptr ? std::optional{*last} : std::nullopt;
-        const auto erased = registry_.erase(name);
-        if (erased && before) {
-            events_.deleted(*before);
-        }
-        if (const SessionPtr waiting = weak.lock()) {
-            waiting->answer(erased ? response_to(id) : protocol::refusing(id, erased.error()));
-        }
-    });
+    actions_.set_class(name, std::nullopt, session.actor(),
+                       [this, id, name, weak = session.weak_from_this()](const std::vector<std::string>& worlds) {
+                           for (const std::string& world : worlds) {
+                               v1::Request command;
+                               command.mutable_delete_world()->set_world(world);
+                               actions_.send(std::move(command));
+                           }
+                           const Class* last = classes::find(registry_.classes(), name);
+                           const std::optional<Class> before = last != nullptr ? std::optional{*last} : std::nullopt;
+                           const auto erased = registry_.erase(name);
+                           if (erased && before) {
+                               events_.deleted(*before);
+                           }
+                           if (const SessionPtr waiting = weak.lock()) {
+                               waiting->answer(erased ? response_to(id) : protocol::refusing(id, erased.error()));
+                           }
+                       });
 }
 
 v1::Response ClassRequests::list(const Session& session, std::uint64_t request_id) const {
@@ -325,8 +314,8 @@ ClassRequests::Answer ClassRequests::add_members(const Session& session, const v
     Class next = **there;
     v1::Response response = response_to(request.request_id());
     for (int i = 0; i < given.names_size(); ++i) {
-        const auto member = classes::add_member(next, given.names(i), "add_members.names[" + std::to_string(i) + "]",
-                                                services_.draw);
+        const auto member =
+            classes::add_member(next, given.names(i), "add_members.names[" + std::to_string(i) + "]", services_.draw);
         if (!member) {
             return member.error();
         }
@@ -424,8 +413,8 @@ void ClassRequests::make_qr_codes(Session& session, const v1::Request& request) 
         const auto code = classes::qr_code_of(wanted[made.codes_size()]);
         if (!code) {
             return waiting->answer(protocol::refusing(
-                work->request.request_id(), refusal(RefusalCode::ResourceExhausted,
-                                                    "the server has no memory for the codes: try again")));
+                work->request.request_id(),
+                refusal(RefusalCode::ResourceExhausted, "the server has no memory for the codes: try again")));
         }
         v1::QrCode& to = *made.add_codes();
         to.set_size(code->size);
@@ -452,12 +441,12 @@ Result<const Class*> ClassRequests::managed(const Session& session, const std::s
             own.push_back(other);
         }
     }
-    return base::Refusal{.code = RefusalCode::NotFound,
-                         .message = own.empty() ? "this user has no class: create one" : "this user has no such class",
-                         .violations = {{field, "the name of a class of this user" + text::did_you_mean(name, own),
-                                         '"' + name + '"'}},
-                         .reason = Reason::ClassNotFound,
-                         .arguments = {{"class", name}}};
+    return base::Refusal{
+        .code = RefusalCode::NotFound,
+        .message = own.empty() ? "this user has no class: create one" : "this user has no such class",
+        .violations = {{field, "the name of a class of this user" + text::did_you_mean(name, own), '"' + name + '"'}},
+        .reason = Reason::ClassNotFound,
+        .arguments = {{"class", name}}};
 }
 
 v1::ClassInfo ClassRequests::info_of(const Class& of) const {
@@ -495,7 +484,7 @@ v1::ClassInfo ClassRequests::info_of(const Class& of) const {
 }
 
 void ClassRequests::create_world(const Class& of, const Member& member) {
-    if (actions_.create_world(creation_of(of, member), {classes::user_of(of, member), of.name, of.teacher}, of.frozen)) {
+    if (actions_.create_world(creation_of(of, member), {classes::user_of(of, member), of.name, of.teacher})) {
         return;
     }
     const auto timer = std::make_shared<asio::steady_timer>(context_, busy_pause);

@@ -20,19 +20,15 @@ namespace evod::network {
 /// What the simulation does for classes. All functions are called and call back on the network thread.
 struct ClassActions {
     /// Creates the world of a member. Returns false if the simulation is too busy.
-    std::function<bool(v1::Request, simulation::Ownership, bool frozen)> create_world;
+    std::function<bool(v1::Request, simulation::Ownership)> create_world;
     /// Sends a command on behalf of the server.
     std::function<void(v1::Request)> send;
-    /// Stops all worlds of the class, or lets them go on, then calls `done`.
+    /// Sets the rules of a class for its worlds, then calls `done` with all its worlds.
     ///
-    /// done  refused: why the worlds could not be changed; nullopt: they are.
-    std::function<void(const std::string& class_name, bool frozen,
-                       std::function<void(const std::optional<base::Refusal>& refused)> done)>
-        freeze;
-    /// Makes the ranges and member_worlds_max of a class apply to its worlds.
-    std::function<void(const classes::Class& of)> set_rules;
-    /// Lists all worlds of the class, with the forks of its members.
-    std::function<void(const classes::Class& of, std::function<void(std::vector<std::string> worlds)> done)> worlds_of;
+    /// rules  nullopt: the class is deleted.
+    std::function<void(const std::string& name, std::optional<simulation::ClassRules> rules, base::Actor by,
+                       std::function<void(const std::vector<std::string>& worlds)> done)>
+        set_class;
 };
 
 class ClassRequests {

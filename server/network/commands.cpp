@@ -314,8 +314,8 @@ void Commands::on_refused(const runtime::CommandMail& mail, const base::Refusal&
     if (mail.session == 0) {
         // The world of a member of a class is there already each time the member connects again.
         const auto* create = std::get_if<simulation::CreateWorld>(&mail.command);
-        const bool is_there = create != nullptr && !create->ownership.class_name.empty() &&
-                              why.reason == base::Reason::WorldExists;
+        const bool is_there =
+            create != nullptr && !create->ownership.class_name.empty() && why.reason == base::Reason::WorldExists;
         if (why.reason != base::Reason::NoLease && !is_there) {
             log::error("the server's own command {} is refused: {}", mail.request_name, to_text(why));
         }

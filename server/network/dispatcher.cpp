@@ -103,7 +103,8 @@ base::Refusal shutting_down_refusal() {
 
 Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulations, runtime::Outbox& outbox,
                        const Sessions& sessions, Streams& streams, SessionHost& host, std::size_t replays_max,
-                       classes::Registry& classes, std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
+                       classes::Registry& classes, std::function<void()> shut_down,
+                       std::function<v1::Metrics()> metrics)
     : simulations_{simulations}
     , sessions_{sessions}
     , streams_{streams}
@@ -118,20 +119,14 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Simulations& simulati
 
 ClassActions Dispatcher::class_actions() {
     return {.create_world =
-                [this](v1::Request request, simulation::Ownership ownership, bool frozen) {
-                    return commands_.create_own(std::move(request), std::move(ownership), frozen);
+                [this](v1::Request request, simulation::Ownership ownership) {
+                    return commands_.create_own(std::move(request), std::move(ownership));
                 },
             .send = [this](v1::Request request) { commands_.handle_own(std::move(request)); },
-            // The lead connects these three with the simulation.
-            .freeze = [](const std::string&, bool, const auto& done) { done(std::nullopt); },
-            .set_rules = [](const classes::Class&) {},
-            .worlds_of =
-                [](const classes::Class& of, const auto& done) {
-                    std::vector<std::string> worlds;
-                    for (const classes::Member& member : of.members) {
-                        worlds.push_back(classes::world_of(of, member));
-                    }
-                    done(worlds);
+            .set_class =
+                [this](const std::string& name, std::optional<simulation::ClassRules> rules, base::Actor by,
+                       std::function<void(const std::vector<std::string>&)> done) {
+                    set_class(name, std::move(rules), std::move(by), std::move(done));
                 }};
 }
 
@@ -405,12 +400,12 @@ void Dispatcher::on_done(runtime::ClassSet done) {
         streams_.publish(std::move(event));
     }
     if (const auto waiting = class_waiters_.extract(done.number); !waiting.empty()) {
-        waiting.mapped()();
+        waiting.mapped()(done.worlds);
     }
 }
 
 void Dispatcher::set_class(const std::string& name, std::optional<simulation::ClassRules> rules, base::Actor by,
-                           std::function<void()> done) {
+                           std::function<void(const std::vector<std::string>& worlds)> done) {
     class_waiters_.emplace(++last_class_change_, std::move(done));
     simulations_.mailbox_of("").push(runtime::SetClass{name, std::move(rules), std::move(by), last_class_change_});
 }

@@ -43,11 +43,11 @@ class Dispatcher {
     const ReplayPlaces& replay_places() const { return replay_places_; }
     ClassRequests& class_requests() { return class_requests_; }
     BackgroundQueries& background_queries() { return background_queries_; }
-    /// Sets the rules of a class for its worlds. Calls `done` when they hold.
+    /// Sets the rules of a class for its worlds. Calls `done` with all its worlds when they hold.
     ///
     /// rules  nullopt: the class is deleted.
     void set_class(const std::string& name, std::optional<simulation::ClassRules> rules, base::Actor by,
-                   std::function<void()> done);
+                   std::function<void(const std::vector<std::string>& worlds)> done);
     /// Commands::handle_own().
     void handle_own(v1::Request request) { commands_.handle_own(std::move(request)); }
 
@@ -100,7 +100,8 @@ class Dispatcher {
     Commands commands_;
     ClassRequests class_requests_;
     ReplayPlaces replay_places_;
-    std::map<std::uint64_t, std::function<void()>> class_waiters_; // key: ClassSet::number
+    std::map<std::uint64_t, std::function<void(const std::vector<std::string>& worlds)>>
+        class_waiters_; // key: ClassSet::number
     std::uint64_t last_class_change_ = 0;
     bool going_away_ = false;
 };

@@ -4,7 +4,8 @@
 // Full         a connection becomes a newcomer, which counts for its address until its Hello. If there are too many,
 //              the oldest newcomer makes room: of the same address if it holds half of the places, otherwise of the
 //              address with the most. With its Hello it needs one of the places of its account (base::Quota). If none
-//              is free, the account with the most sessions loses its oldest one without a command under way. While
+//              is free, the account with the most sessions loses its oldest one without a command under way. A member
+//              of a class who has member_sessions_max loses the oldest. While
 //              farewells_max connections receive a Goodbye, the oldest of them is closed at once for each new one.
 #pragma once
 

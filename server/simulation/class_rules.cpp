@@ -29,14 +29,14 @@ std::vector<base::Violation> values_outside(const ClassRules& rules, const std::
                                             std::span<const parameters::Assignment> assignments,
                                             std::string_view field_prefix) {
     std::vector<base::Violation> outside;
+    const auto text_of = [](double value) { return text::number_text(value, text::Exponent::Never); };
     for (const parameters::Assignment& assignment : assignments) {
         const ParameterRange* range = rules.range_of(assignment.name);
         const auto number = number_of(assignment.value);
         if (range != nullptr && number && !(*number >= range->min && *number <= range->max)) {
-            outside.push_back(
-                {std::string{field_prefix} + assignment.name,
-                 text::number_text(range->min) + " to " + text::number_text(range->max) + " (class " + class_name + ")",
-                 text::number_text(*number)});
+            outside.push_back({std::string{field_prefix} + assignment.name,
+                               text_of(range->min) + " to " + text_of(range->max) + " (class " + class_name + ")",
+                               text_of(*number)});
         }
     }
     return outside;

@@ -47,8 +47,8 @@ TEST(MemberNames, CountCharactersNotBytes) {
 }
 
 TEST(MemberNames, RefuseWhatCannotBeSeen) {
-    for (const char* bad : {"a\nb", "a\tb", "\x7f", "a\u0085", "a\u00adb", "a\u200bb", "a\u200eb", "\u202eb", "a\u2066b",
-                            "a\ufeffb", "a\u3164", "\ufe0f", "a\u2028b", "\U000e0041", "\u2800"}) {
+    for (const char* bad : {"a\nb", "a\tb", "\x7f", "a\u0085", "a\u00adb", "a\u200bb", "a\u200eb", "\u202eb",
+                            "a\u2066b", "a\ufeffb", "a\u3164", "\ufe0f", "a\u2028b", "\U000e0041", "\u2800"}) {
         EXPECT_FALSE(cleaned_member_name(bad, "n")) << bad;
     }
     EXPECT_EQ(cleaned_member_name("a\u202eb", "n").error().violations.at(0).got, "the character U+202E");

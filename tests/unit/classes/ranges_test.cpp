@@ -33,7 +33,8 @@ TEST(Ranges, TheDefaultWorldIsWithinTheDefaults) {
 
 TEST(Ranges, OthersStayAsTheDefaults) {
     std::vector<base::Violation> violations;
-    const auto ranges = ranges_of(request({{"mutation_chance", 0.1, 0.2}, {"population_size", 10, 1000}}), "r", violations);
+    const auto ranges =
+        ranges_of(request({{"mutation_chance", 0.1, 0.2}, {"population_size", 10, 1000}}), "r", violations);
     EXPECT_TRUE(violations.empty());
     EXPECT_EQ(ranges.size(), default_ranges().size() + 1);
     EXPECT_EQ(of(ranges, "population_size")->max, 1000);
@@ -80,8 +81,9 @@ TEST(Ranges, AWorldOutsideIsRefused) {
     std::vector<base::Violation> violations;
     check_ranges(default_ranges(), parameters, schedule, "bio2", "create_class.template", violations);
     ASSERT_EQ(violations.size(), 2u);
-    EXPECT_EQ(to_text(violations[1]), "create_class.template.population_size: got 100000, allowed 1 to 500 (class bio2)");
-    EXPECT_EQ(violations[0].field, "create_class.template.schedule.food_count (generation 7)");
+    EXPECT_EQ(to_text(violations[0]),
+              "create_class.template.population_size: got 100000, allowed 1 to 500 (class bio2)");
+    EXPECT_EQ(violations[1].field, "create_class.template.schedule.generation 7.food_count");
 }
 
 } // namespace

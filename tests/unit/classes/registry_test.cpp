@@ -34,7 +34,8 @@ class RegistryTest : public testing::Test {
     static Class made(const std::string& name, std::uint64_t seed = 1) {
         v1::CreateWorld world;
         world.set_seed(seed);
-        return {.name = name, .teacher = "frau_k", .world_template = world.SerializeAsString(), .ranges = default_ranges()};
+        return {
+            .name = name, .teacher = "frau_k", .world_template = world.SerializeAsString(), .ranges = default_ranges()};
     }
 
     const std::string folder = fs::temp_directory_path() / ("registry_test_" + std::to_string(::getpid()));
@@ -86,7 +87,9 @@ class Changes {
         if (there == nullptr) {
             v1::CreateWorld world;
             world.set_seed(random_());
-            ASSERT_TRUE(registry.store({.name = name, .teacher = "t", .world_template = world.SerializeAsString(),
+            ASSERT_TRUE(registry.store({.name = name,
+                                        .teacher = "t",
+                                        .world_template = world.SerializeAsString(),
                                         .ranges = default_ranges()}));
             return;
         }

@@ -1581,6 +1581,13 @@ export interface Limits {
   watched_islands_max?: number;
   /** time until an HTTP request has arrived completely */
   http_request_timeout_s?: number;
+  classes_max?: number;
+  /** members of a class, with those who were removed */
+  class_members_max?: number;
+  /** sessions of a member of a class; above this limit the oldest ends */
+  member_sessions_max?: number;
+  /** wrong codes in a Join per second, of all clients together */
+  wrong_codes_per_s_max?: number;
 }
 
 /** Returns the same metrics as /metrics over HTTP. */
@@ -1978,7 +1985,8 @@ export interface CreateClass {
   /** The world of each member. `name` must be empty. Its parameters must be within `ranges`. Absent: the default world. */
   template?: CreateWorld;
   seeds?: ClassSeeds;
-  /** Narrower ranges of parameters in the worlds of this class. Absent: the server's defaults for classes. */
+  /** Narrower ranges of parameters in the worlds of this class. Parameters that are not listed have the server's defaults
+   *  for classes. */
   ranges?: QuotaRanges;
   /** Maximum number of worlds of one member, 1 to 8; 0: 3. A member creates further worlds by forks. */
   member_worlds_max?: number;
@@ -2002,9 +2010,9 @@ export interface QuotaRange {
 /** Changes a class: all that is set, or nothing. */
 export interface UpdateClass {
   class?: string;
-  /** true: makes the code valid for 20 minutes, and the class open. false: no student can join. */
+  /** true: makes the code valid for 20 minutes, or another one if it is not valid now. false: no new member can join. */
   open?: boolean;
-  /** replaces the code */
+  /** replaces the code, and makes the new one valid; not with `open: false` */
   new_code?: boolean;
   /** true: all worlds of the class stop at once, and their members cannot change them. false: they go on. */
   frozen?: boolean;
@@ -2044,7 +2052,7 @@ export interface ClassInfo {
   lesson?: string;
   /** in the order in which they joined */
   members?: ClassMember[];
-  /** Wrong codes arrive so fast that joining is slowed for the whole server: a client may be guessing. */
+  /** Wrong codes arrive faster than Limits.wrong_codes_per_s_max: a program may be guessing. */
   codes_are_guessed?: boolean;
 }
 
