@@ -33,6 +33,7 @@ constexpr Words german{"Name",
                        "Beobachtet",
                        "Was die Theorie sagt",
                        "Lass die Welt laufen",
+                       "Generationen",
                        "von",
                        "bis"};
 

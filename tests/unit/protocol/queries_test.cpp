@@ -127,6 +127,38 @@ TEST_F(Queries, OfAHistoryListTheChangesOfParameters) {
     EXPECT_EQ(answer(request).history().changes_size(), 0);
 }
 
+TEST_F(Queries, ObserveComputesItsExpressionsLater) {
+    v1::Request request;
+    request.mutable_observe()->set_world("w");
+    for (const char* expression : {"generation[-1]", "fitness_mean[2]", "island@max[1] + 1"}) {
+        request.mutable_observe()->add_expressions(expression);
+    }
+    const v1::Observations observed = answer(request).observations();
+    ASSERT_EQ(observed.observations_size(), 3);
+    EXPECT_EQ(observed.observations(0).value(), 1);
+    EXPECT_FALSE(observed.observations(1).has_value()) << "one finished generation";
+    EXPECT_EQ(observed.observations(2).value(), 3) << "three islands";
+
+    request.mutable_observe()->set_expressions(1, "fitness_mean[");
+    const v1::Status refused = answer(request).status();
+    ASSERT_EQ(refused.violations_size(), 1);
+    EXPECT_EQ(refused.violations(0).field(), "observe.expressions[1]");
+    request.mutable_observe()->set_world("other");
+    EXPECT_EQ(answer(request).status().reason(), v1::REASON_WORLD_NOT_FOUND);
+}
+
+TEST_F(Queries, ThatReadTooManyNumbersAreRefused) {
+    const ObservedHistory observed{
+        .observations = {*simulation::Observation::parse("sum(generation)",
+                                                         simulation::ObservedColumns{parameters::Parameters{}}, "")},
+        .history = {simulation::GenerationRows{std::vector<simulation::GenerationStatistics>(1)}},
+        .parameters = {}};
+    EXPECT_EQ(to_proto(observed)->observations_size(), 1);
+    ObservedHistory many = observed;
+    many.history.resize(2'000'000, many.history.front());
+    EXPECT_EQ(to_proto(many).error().violations[0].field, "observe.expressions");
+}
+
 TEST_F(Queries, ThatFailNameTheirField) {
     v1::Request request;
     request.mutable_get_organism()->set_island(9);
