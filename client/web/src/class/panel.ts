@@ -8,7 +8,7 @@ import {panels_texts} from "../texts/panels";
 import type {ClassInfo, CreateClass, QuotaRange} from "../core/protocol";
 import {set_attribute, set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
-import {button, hint, labelled, row} from "../widgets/form";
+import {button, hint, labelled, Question, row} from "../widgets/form";
 import {experiment_json} from "../world/experiment_text";
 import type {Panel, PanelContext} from "../world/panel_context";
 import {typed_number} from "../world/parameter_values";
@@ -47,6 +47,12 @@ export class ClassPanel implements Panel {
   readonly #range_list = h("div", {class: "class-ranges"});
   readonly #error = h("p", {class: "error", role: "alert"});
   readonly #create = h("button", {type: "submit", class: "button button-primary"}, texts.create);
+  readonly #question = h("p", {});
+  readonly #confirm = new Question(
+    {before: [this.#question]}, texts.do_remove, () => void this.#do_delete(),
+    () => this.#opener?.isConnected ? this.#opener : this.#name);
+  #deleted = "";
+  #opener: HTMLElement|null = null;
   #ranges: RangeRow[] = [];
   #classes: ClassInfo[]|null = null; // null: not read yet
 
@@ -59,7 +65,7 @@ export class ClassPanel implements Panel {
     };
     const field = (text: string, control: HTMLElement): HTMLElement[] => [labelled(text, control), control];
     this.element =
-      h("div", {class: "panel panel-class"}, this.#list, this.#none,
+      h("div", {class: "panel panel-class"}, this.#list, this.#confirm.element, this.#none,
         h("form", {class: "panel", "aria-label": texts.new_class, onsubmit: submit}, h("h3", {}, texts.new_class),
           this.#about,
           h("div", {class: "labelled"}, ...field(texts.name, this.#name), ...field(texts.population, this.#population),
@@ -105,8 +111,23 @@ export class ClassPanel implements Panel {
         frozen ? texts.frozen : "",
         teacher && teacher !== this.#context.server.state.welcome?.user ? texts.teacher(teacher) : ""
       ];
-      return h("li", {}, open, h("span", {class: "hint"}, facts.filter(Boolean).join(" · ")));
+      const remove: HTMLButtonElement = button(texts.remove, () => this.#ask_delete(name, remove));
+      remove.setAttribute("aria-label", texts.remove_name(name));
+      return h("li", {}, open, remove, h("span", {class: "hint"}, facts.filter(Boolean).join(" · ")));
     }));
+  }
+
+  #ask_delete(name: string, opener: HTMLElement): void {
+    this.#deleted = name;
+    this.#opener = opener;
+    set_text(this.#question, texts.ask_remove(name));
+    this.#confirm.open();
+  }
+
+  async #do_delete(): Promise<void> {
+    this.#confirm.close();
+    await this.#context.attempt(() => this.#context.server.request("delete_class", {class: this.#deleted}));
+    await this.#read();
   }
 
   async #list_populations(): Promise<void> {

@@ -2,7 +2,8 @@
 //
 // It covers the page of the worlds. F freezes, Enter opens a world, Escape returns to the page.
 import type {Look} from "../core/messages";
-import {wall_texts as texts} from "../texts/class";
+import {app_texts} from "../texts/app";
+import {code_texts, wall_texts as texts} from "../texts/class";
 import {set_attribute, set_options} from "../widgets/controls";
 import {h, set_text} from "../widgets/dom";
 import {save_file} from "../widgets/files";
@@ -40,6 +41,7 @@ export class ClassWall implements ForAllContext {
   readonly #notices = new Notices();
   readonly #live = h("p", {class: "visually-hidden", role: "status", "aria-live": "polite"});
   readonly #count = h("span", {class: "wall-count"});
+  readonly #guessed = h("p", {class: "warning wall-guessed", role: "status"});
   readonly #frozen = h("span", {class: "badge wall-frozen", hidden: true}, texts.frozen_badge);
   readonly #order: HTMLSelectElement = h(
     "select", {class: "field", "aria-label": texts.order, onchange: () => this.#set_order(this.#order.value as Order)});
@@ -84,6 +86,7 @@ export class ClassWall implements ForAllContext {
           this.#for_all.freeze, code),
         h("nav", {class: "wall-nav", "aria-label": texts.views}, ...Object.values(this.#views), this.#collect,
           h("span", {class: "grow"}), sort),
+        this.#guessed,
         h("div", {class: "wall-body"}, this.#for_all.element, this.#tiles.element, this.#empty, this.#members.element,
           this.#compare.element),
         this.#live, this.#notices.element);
@@ -126,7 +129,13 @@ export class ClassWall implements ForAllContext {
       return;
     }
     const connected = students.filter(({member}) => (member.sessions ?? 0) > 0).length;
-    set_text(this.#count, info === null ? "" : texts.connected(connected, students.length));
+    const {phase, message} = server.state;
+    set_text(
+      this.#count,
+      phase !== "open" ? app_texts.lost(message) :
+        info === null  ? "" :
+                         texts.connected(connected, students.length));
+    set_text(this.#guessed, info?.codes_are_guessed ? code_texts.guessed : "");
     this.#frozen.hidden = !model.is_frozen;
     set_attribute(this.element, "data-frozen", model.is_frozen ? "" : null);
     this.#for_all.refresh();

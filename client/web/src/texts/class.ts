@@ -10,6 +10,11 @@ export const class_panel_texts = {
   code: (code: string) => `code ${code}`,
   frozen: "frozen",
   teacher: (teacher: string) => `teacher ${teacher}`,
+  remove: "Delete …",
+  remove_name: (name: string) => `Delete ${name}`,
+  ask_remove: (name: string) => `Delete the class ${
+    name}? Its members can no longer connect, and its worlds end. Their run files stay in the server's folder.`,
+  do_remove: "Delete",
   new_class: "New class",
   about: (world: string) => `Each student gets a world that begins like ${world || "the shown world"}.`,
   name: "Name",

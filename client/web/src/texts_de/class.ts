@@ -10,6 +10,11 @@ export const class_panel_texts: typeof english.class_panel_texts = {
   code: (code) => `Code ${code}`,
   frozen: "angehalten",
   teacher: (teacher) => `Lehrkraft ${teacher}`,
+  remove: "Löschen …",
+  remove_name: (name) => `${name} löschen`,
+  ask_remove: (name) => `Die Klasse ${
+    name} löschen? Niemand kommt mehr hinein, und ihre Welten enden. Die Laufdateien bleiben im Ordner des Servers.`,
+  do_remove: "Löschen",
   new_class: "Neue Klasse",
   about: (world) => `Alle bekommen eine eigene Welt, die wie ${world || "die gezeigte Welt"} beginnt.`,
   name: "Name",
