@@ -96,6 +96,7 @@ class DispatcherTest : public Loopback {
     runtime::Outbox outbox{[] {}};
     Streams streams{sessions, simulations, memory};
     int shut_downs = 0;
+    classes::Registry classes;
     static constexpr std::size_t replays_max = 4;
     Dispatcher dispatcher{context,
                           simulations,
@@ -104,6 +105,7 @@ class DispatcherTest : public Loopback {
                           streams,
                           host,
                           replays_max,
+                          classes,
                           [this] { ++shut_downs; },
                           [] { return v1::Metrics{}; }};
 };

@@ -9,7 +9,8 @@ namespace evod::protocol {
 namespace {
 
 TEST(Refusals, HaveTheReasonsOfTheProtocol) {
-    EXPECT_EQ(static_cast<int>(base::Reason::SessionsMax), v1::Reason_MAX);
+    EXPECT_EQ(static_cast<int>(base::Reason::SessionsMax), v1::REASON_SESSIONS_MAX);
+    EXPECT_EQ(static_cast<int>(base::Reason::JoinsTooFast), v1::Reason_MAX);
     EXPECT_EQ(static_cast<int>(base::Reason::WorldNotFound), v1::REASON_WORLD_NOT_FOUND);
     EXPECT_EQ(static_cast<int>(base::Reason::RunFileDamaged), v1::REASON_RUN_FILE_DAMAGED);
     EXPECT_EQ(static_cast<int>(base::Reason::NoView), v1::REASON_NO_VIEW);
