@@ -12,8 +12,8 @@
 namespace evod::classes {
 namespace {
 
-// Words that a child may carry before the class: no judgement, no colour of skin, no animal that is an insult in English
-// or German.
+// Words that a child may carry before the class: no judgement, no colour of skin, no animal that is an insult in
+// English or German.
 constexpr std::array<std::string_view, words_of_a_kind> adjectives = {
     "red",    "blue",   "green", "golden", "silver", "orange", "violet", "amber",  "coral",  "copper", "indigo",
     "pearl",  "ruby",   "jade",  "mint",   "royal",  "sunny",  "windy",  "snowy",  "misty",  "starry", "lunar",

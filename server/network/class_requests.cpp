@@ -142,7 +142,7 @@ void ClassRequests::handle(Session& session, const v1::Request& request) {
     };
     switch (request.kind_case()) {
     case v1::Request::kCreateClass:
-        return answer(create(session, request));
+        return create(session, request);
     case v1::Request::kUpdateClass:
         return update(session, request);
     case v1::Request::kDeleteClass:
@@ -167,10 +167,9 @@ void ClassRequests::forget(const Session& session) {
 
 // ---- classes -----------------------------------------------------------------------------------------------------
 
-ClassRequests::Answer ClassRequests::create(const Session& session, const v1::Request& request) {
-    const v1::CreateClass& given = request.create_class();
+Result<Class> ClassRequests::checked(const v1::CreateClass& given, const std::string& teacher) const {
     Violations violations;
-    Class of{.name = given.name(), .teacher = session.user().name, .world_template = {}};
+    Class of{.name = given.name(), .teacher = teacher, .world_template = {}};
     if (!classes::is_class_name(given.name())) {
         violations.push_back({"create_class.name", std::string{classes::class_name_allowed}, '"' + given.name() + '"'});
     }
@@ -196,15 +195,31 @@ ClassRequests::Answer ClassRequests::create(const Session& session, const v1::Re
                              .reason = Reason::ClassExists,
                              .arguments = {{"class", of.name}}};
     }
-    classes::open(of, true, registry_.classes(), services_.now_s(), services_.draw);
-    if (auto stored = registry_.store(of); !stored) {
-        return stored.error();
+    return of;
+}
+
+void ClassRequests::create(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    auto of = checked(request.create_class(), session.user().name);
+    if (!of) {
+        return session.answer(protocol::refusing(id, of.error()));
+    }
+    classes::open(*of, true, registry_.classes(), services_.now_s(), services_.draw);
+    if (auto stored = registry_.store(*of); !stored) {
+        return session.answer(protocol::refusing(id, stored.error()));
     }
     log::info({.session = session.number(), .client = session.by()}, "session {}: {} creates class {}",
-              session.number(), session.by(), of.name);
-    actions_.set_class(of.name, rules_of(of), session.actor(), [](const auto&) {});
-    events_.changed(of.name);
-    return answer_of(request.request_id(), info_of(of));
+              session.number(), session.by(), of->name);
+    events_.changed(of->name);
+    actions_.set_class(of->name, rules_of(*of), session.actor(),
+                       [this, id, of = *of, weak = session.weak_from_this()](const std::vector<std::string>& worlds) {
+                           // Worlds of a class of this name that was deleted while the server was killed. No member of
+                           // the new class may get one of them.
+                           delete_worlds(worlds);
+                           if (const SessionPtr waiting = weak.lock()) {
+                               waiting->answer(answer_of(id, info_of(of)));
+                           }
+                       });
 }
 
 void ClassRequests::update(Session& session, const v1::Request& request) {
@@ -498,6 +513,14 @@ void ClassRequests::create_world(const Class& of, const Member& member) {
             create_world(*now, *there);
         }
     });
+}
+
+void ClassRequests::delete_worlds(const std::vector<std::string>& worlds) const {
+    for (const std::string& world : worlds) {
+        v1::Request command;
+        command.mutable_delete_world()->set_world(world);
+        actions_.send(std::move(command));
+    }
 }
 
 void ClassRequests::end_sessions(const std::string& user, const base::Refusal& why) const {

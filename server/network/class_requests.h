@@ -51,7 +51,9 @@ class ClassRequests {
   private:
     using Answer = base::Result<v1::Response>;
 
-    base::Result<v1::Response> create(const Session& session, const v1::Request& request);
+    /// The class that a request describes.
+    base::Result<classes::Class> checked(const v1::CreateClass& given, const std::string& teacher) const;
+    void create(Session& session, const v1::Request& request);
     void update(Session& session, const v1::Request& request);
     void erase(Session& session, const v1::Request& request);
     v1::Response list(const Session& session, std::uint64_t request_id) const;
@@ -64,6 +66,7 @@ class ClassRequests {
     base::Result<const classes::Class*> managed(const Session& session, const std::string& name,
                                                 const std::string& field) const;
     v1::ClassInfo info_of(const classes::Class& of) const;
+    void delete_worlds(const std::vector<std::string>& worlds) const;
     void create_world(const classes::Class& of, const classes::Member& member);
     /// Ends the sessions of this user, or of all members of a class if `user` ends with a "/".
     void end_sessions(const std::string& user, const base::Refusal& why) const;

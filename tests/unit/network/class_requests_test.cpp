@@ -37,28 +37,30 @@ class ClassRequestsTest : public Loopback {
 
     std::vector<v1::Request> created; // commands that create worlds
     std::vector<simulation::Ownership> owners;
-    std::vector<std::string> rules_of; // classes whose rules were set
+    std::vector<std::string> left_worlds, deleted; // worlds of a class, and those that were deleted
+    std::vector<std::string> rules_of;             // classes whose rules were set
     bool is_busy = false;
     classes::Registry registry;
-    ClassRequests requests{context,
-                           registry,
-                           sessions,
-                           host,
-                           {.create_world =
-                                [this](v1::Request request, simulation::Ownership owner) {
-                                    if (!is_busy) {
-                                        created.push_back(std::move(request));
-                                        owners.push_back(std::move(owner));
-                                    }
-                                    return !is_busy;
-                                },
-                            .send = [](const v1::Request&) {},
-                            .set_class =
-                                [this](const std::string& name, const auto&, const auto&, const auto& done) {
-                                    rules_of.push_back(name);
-                                    done({});
-                                }},
-                           access::draw_random};
+    ClassRequests requests{
+        context,
+        registry,
+        sessions,
+        host,
+        {.create_world =
+             [this](v1::Request request, simulation::Ownership owner) {
+                 if (!is_busy) {
+                     created.push_back(std::move(request));
+                     owners.push_back(std::move(owner));
+                 }
+                 return !is_busy;
+             },
+         .send = [this](const v1::Request& request) { deleted.push_back(request.delete_world().world()); },
+         .set_class =
+             [this](const std::string& name, const auto&, const auto&, const auto& done) {
+                 rules_of.push_back(name);
+                 done(left_worlds);
+             }},
+        access::draw_random};
 };
 
 TEST_F(ClassRequestsTest, AJoinCreatesTheMembersWorld) {
@@ -122,6 +124,12 @@ TEST_F(ClassRequestsTest, ABusySimulationGetsTheWorldLater) {
     }
     ASSERT_EQ(created.size(), 1u);
     EXPECT_EQ(created[0].create_world().name(), "bio2_anna");
+}
+
+TEST_F(ClassRequestsTest, ANewClassHasNoWorldsOfAnEarlierOne) {
+    left_worlds = {"bio2_anna"};
+    create("bio2");
+    EXPECT_EQ(deleted, left_worlds);
 }
 
 TEST_F(ClassRequestsTest, AnUnknownFieldIsRefused) {
