@@ -8,18 +8,15 @@
 #include <utility>
 
 namespace evod::network {
-namespace {
 
 using base::Reason;
 using base::RefusalCode;
 using base::Result;
 
-base::Refusal removed_refusal(const classes::Class& of) {
-    return refusal(RefusalCode::Unauthenticated, "your teacher has removed you from the class: ask your teacher",
-                   Reason::MemberRemoved, {{"class", of.name}});
+base::Refusal removed_refusal(const std::string& class_name) {
+    return refusal(RefusalCode::Unauthenticated, "the teacher has removed this member: ask your teacher",
+                   Reason::MemberRemoved, {{"class", class_name}});
 }
-
-} // namespace
 
 std::optional<Result<AdmittedMember>> ClassAdmission::admit(const v1::Hello& hello) {
     if (hello.has_join()) {
@@ -33,7 +30,7 @@ std::optional<Result<AdmittedMember>> ClassAdmission::admit(const v1::Hello& hel
         return std::nullopt;
     }
     if (found->member->removed) {
-        return removed_refusal(*found->of);
+        return removed_refusal(found->of->name);
     }
     services_.create_world(*found->of, *found->member);
     events_.changed(found->of->name);
@@ -47,7 +44,7 @@ Result<AdmittedMember> ClassAdmission::join(const v1::Join& join) {
     }
     if (const auto found = classes::find_by_personal_code(registry_.classes(), *code)) {
         if (found->member->removed) {
-            return removed_refusal(*found->of);
+            return removed_refusal(found->of->name);
         }
         return join_as(*found->of, found->member->number);
     }

@@ -22,6 +22,9 @@
 
 namespace evod::network {
 
+/// The refusal for a member whom the teacher has removed.
+base::Refusal removed_refusal(const std::string& class_name);
+
 class ClassAdmission {
   public:
     static constexpr std::chrono::seconds warned_for{60}; // after the last wrong code above the bound

@@ -382,9 +382,7 @@ ClassRequests::Answer ClassRequests::change_member(const Session& session, const
         return stored.error();
     }
     if (is_kicked) {
-        end_sessions(user, refusal(RefusalCode::Unauthenticated,
-                                   "your teacher has removed you from the class: ask your teacher",
-                                   Reason::MemberRemoved, {{"class", name}}));
+        end_sessions(user, removed_refusal(name));
     } else if (given.new_personal_code()) {
         end_sessions(user, refusal(RefusalCode::Unauthenticated,
                                    "your teacher has made a new personal code for you: connect with it",

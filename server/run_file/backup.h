@@ -23,8 +23,8 @@ struct Backup {
     std::vector<std::string> failures = {}; // why single files could not be copied; the others are in the copy
 };
 
-/// Copies the runs, the tokens and the classes of the folder `data` to `folder`, which must be empty or must not exist, and must not
-/// be in `data`. A refusal means that there is no copy.
+/// Copies the runs, the tokens and the classes of the folder `data` to `folder`, which must be empty or must not exist,
+/// and must not be in `data`. A refusal means that there is no copy.
 base::Result<Backup> back_up(const std::string& data, const std::string& folder);
 
 } // namespace evod::run_file
