@@ -7,6 +7,7 @@
 #include "server/classes/ranges.h"
 #include "server/log/log.h"
 #include "server/protocol/commands.h"
+#include "server/protocol/parameters.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/request_rules.h"
 #include "server/runtime/random_ids.h"
@@ -53,6 +54,10 @@ void check_worlds_max(std::uint32_t count, const std::string& field, Violations&
     }
 }
 
+simulation::ClassRules rules_of(const Class& of) {
+    return {.frozen = of.frozen, .ranges = of.ranges, .worlds_per_member = of.member_worlds_max};
+}
+
 /// Checks the world of each member, and returns it as the registry stores it: with a seed.
 std::string template_of(const v1::CreateWorld& given, const Class& of, Violations& violations) {
     const std::string path = "create_class.template";
@@ -70,11 +75,17 @@ std::string template_of(const v1::CreateWorld& given, const Class& of, Violation
     world.set_name("world");
     const auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     if (!command) {
+        Violations without_value;
+        const auto assignments = protocol::to_assignments(given.parameters(), path + ".", without_value);
+        const Violations outside = simulation::values_outside(rules_of(of), of.name, assignments, path + ".");
+        violations.insert(violations.end(), outside.begin(), outside.end());
         for (Violation violation : command.error().violations) {
             if (const std::string old = "create_world"; violation.field.starts_with(old)) {
                 violation.field = path + violation.field.substr(old.size());
             }
-            violations.push_back(std::move(violation));
+            if (std::ranges::find(outside, violation.field, &Violation::field) == outside.end()) {
+                violations.push_back(std::move(violation));
+            }
         }
         return {};
     }
@@ -96,10 +107,6 @@ v1::Request creation_of(const Class& of, const Member& member) {
         world.set_seed(base::portable_seed(base::RandomStream{key, member.number}.long_word()).value);
     }
     return request;
-}
-
-simulation::ClassRules rules_of(const Class& of) {
-    return {.frozen = of.frozen, .ranges = of.ranges, .worlds_per_member = of.member_worlds_max};
 }
 
 v1::Response answer_of(std::uint64_t request_id, const v1::ClassInfo& info) {
