@@ -74,7 +74,7 @@ TEST_F(AClass, OtherParametersKeepTheirRange) {
 
 TEST_F(AClass, FreezesAllItsWorldsAndNoOther) {
     for (const char* name : {"bio_ann", "alone"}) {
-        ASSERT_TRUE(laboratory.apply(Run{name, std::nullopt}));
+        ASSERT_TRUE(laboratory.apply(simulation::Run{name, std::nullopt}));
     }
     rules.frozen = true;
     EXPECT_THAT(laboratory.set_class("bio", rules), ElementsAre("bio_ann", "bio_ben"));
