@@ -50,6 +50,13 @@ std::string other_page_host(const evod::v1::Welcome& welcome, const Endpoint& se
     return host == server.host || (is_this_machine(host) && is_this_machine(server.host)) ? "" : host;
 }
 
+bool is_of_this_machine(std::string_view link) {
+    std::string_view host = link.substr(std::min(link.find("://") + 3, link.size()));
+    host = host.substr(0, host.find_first_of("/#"));
+    host = host.starts_with('[') ? host.substr(1, host.find(']') - 1) : host.substr(0, host.find(':'));
+    return is_this_machine(host);
+}
+
 std::string link_of(const std::string& page, const PageMoment& moment) {
     std::string link = page + "#world=" + moment.world;
     const auto add = [&link](const char* name, std::uint64_t value) {

@@ -34,6 +34,9 @@ std::string page_of(const evod::v1::Welcome& welcome, const Endpoint& server, bo
 /// The host of the page if it is another one than that to which this client has connected. Empty: it is the same.
 std::string other_page_host(const evod::v1::Welcome& welcome, const Endpoint& server);
 
+/// Whether a link leads to the loopback interface, which no other device can reach.
+bool is_of_this_machine(std::string_view link);
+
 /// "http://lab:7745/#world=default&generation=12&tick=600&island=0&organism=7". Never contains a token.
 std::string link_of(const std::string& page, const PageMoment& moment);
 

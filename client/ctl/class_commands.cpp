@@ -78,7 +78,11 @@ std::string invitation(Caller& caller, const ClassOptions& options, const v1::Cl
     if (options.page.empty() && caller.page().empty()) {
         return text + "link: none, because this server has no page; --page names the address of another\n";
     }
-    return text + "link: " + join_link(caller, options.page, info.code()) + "\n";
+    const std::string link = join_link(caller, options.page, info.code());
+    if (core::is_of_this_machine(link)) {
+        std::cerr << "evoctl: other devices cannot use this link: name the address of this machine with --page\n";
+    }
+    return text + "link: " + link + "\n";
 }
 
 /// Draws the QR code of the link. It must not pass print(), which would remove its colours.

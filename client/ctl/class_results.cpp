@@ -49,8 +49,8 @@ Results results_of(const v1::History& history) {
     return results;
 }
 
-/// Returns the history of the world with which a member began. Empty if the world does not exist, because the member has
-/// not joined yet or has deleted it.
+/// Returns the history of the world with which a member began. Empty if the world does not exist, because the member
+/// has not joined yet or has deleted it.
 v1::History history_of(Caller& caller, const v1::ClassMember& member) {
     v1::GetHistory wanted;
     wanted.set_world(member.world());

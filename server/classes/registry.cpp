@@ -183,6 +183,14 @@ std::string fault_of(const std::string& key, Class& read) {
     return {};
 }
 
+/// Whether the name of a member is no longer part of the class.
+bool loses_a_name(const Class* before, const Class* after) {
+    return before != nullptr && std::ranges::any_of(before->members, [&](const Member& member) {
+               return after == nullptr ||
+                      std::ranges::find(after->members, member.name, &Member::name) == after->members.end();
+           });
+}
+
 } // namespace
 
 std::string Registry::path() const {
@@ -248,6 +256,7 @@ Result<void> Registry::open_for_writing() {
     database_ = std::make_unique<Database>(file, Database::Mode::Write);
     Database& database = *database_;
     database.run("PRAGMA journal_mode = WAL");
+    database.run("PRAGMA secure_delete = ON"); // a deleted name must not stay in the file
     database.run(file_->durability == run_file::Durability::Full ? "PRAGMA synchronous = FULL"
                                                                  : "PRAGMA synchronous = NORMAL");
     if (database.number("SELECT count(*) FROM sqlite_schema") == 0) {
@@ -311,7 +320,9 @@ Result<void> Registry::write(const Class* before, const Class* after) {
         return refusal(RefusalCode::Unavailable, "the change of the class cannot be written: " + path() + ": " + why);
     }
     is_unknown_ = false;
-    if (database_->log_pages() > log_pages_max) {
+    if (loses_a_name(before, after)) {
+        database_->run("PRAGMA wal_checkpoint(TRUNCATE)"); // nor in its log
+    } else if (database_->log_pages() > log_pages_max) {
         database_->copy_log();
     }
     return {};

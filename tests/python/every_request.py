@@ -45,6 +45,20 @@ async def first(stream, condition=lambda item: True):
                 return item
 
 
+async def send_requests_of_classes(lab, world):
+    """Notes in the world, and a class that is deleted again."""
+    await result(world.note("a remark"))
+    assert [note.text for note in await result(world.notes())] == ["a remark"]
+    bio2 = await result(lab.create_class("bio2", {"population_size": 10}))
+    assert [code.name for code in await result(bio2.add_members(["Ada"]))] == ["Ada"]
+    assert len(await result(bio2.new_personal_code("Ada"))) == 10
+    assert len(await result(bio2.open())) == 6
+    assert [room.name for room in await result(lab.classes())] == ["bio2"]
+    assert await result(bio2.set_speed("max")) == {}
+    await result(lab.request(make_qr_codes=c.MakeQrCodes(texts=["http://lab:7745/#join=KTRMXB"])))
+    await result(bio2.delete())
+
+
 async def send_every_request(lab):
     """The server must keep its runs and have one world."""
     assert (await result(lab.describe())).limits.worlds_max == 64
@@ -112,17 +126,7 @@ async def send_every_request(lab):
     await result(world.set_speed(2.0))
     await result(world.pause())
 
-    # Notes, classes.
-    await result(world.note("a remark"))
-    assert [note.text for note in await result(world.notes())] == ["a remark"]
-    bio2 = await result(lab.create_class("bio2", {"population_size": 10}))
-    assert [code.name for code in await result(bio2.add_members(["Ada"]))] == ["Ada"]
-    assert len(await result(bio2.new_personal_code("Ada"))) == 10
-    assert len(await result(bio2.open())) == 6
-    assert [room.name for room in await result(lab.classes())] == ["bio2"]
-    assert await result(bio2.set_speed("max")) == {}
-    await result(lab.request(make_qr_codes=c.MakeQrCodes(texts=["http://lab:7745/#join=KTRMXB"])))
-    await result(bio2.delete())
+    await send_requests_of_classes(lab, world)
 
     # Queries.
     assert await result(world.observe("mean(fitness_best)")) is not None

@@ -1,5 +1,5 @@
-"""evoctl class against a real server: a class from a list, plain clients as students, and everything collected. EVOD and
-EVOCTL name the programs, MESSAGES the folder of the message classes."""
+"""evoctl class against a real server: a class from a list, plain clients as students, and everything collected. EVOD
+and EVOCTL name the programs, MESSAGES the folder of the message classes."""
 import csv
 import json
 import pathlib
@@ -89,17 +89,21 @@ class FromAList(Classes):
             self.assertEqual(verified.returncode, 0, verified.stderr)
         with open(folder / "notes.csv", newline="") as file:
             notes = list(csv.DictReader(file))
-        self.assertEqual([(note["name"], note["world"], note["kind"], note["text"], note["generation"]) for note in notes],
-                         [(name, world, "prediction", f"{name}, \"more\"\n", "1") for name, world in zip(NAMES, worlds)])
+        self.assertEqual([tuple(note[column] for column in ("name", "world", "kind", "text", "generation"))
+                          for note in notes],
+                         [(name, world, "prediction", f"{name}, \"more\"\n", "1")
+                          for name, world in zip(NAMES, worlds)])
         with open(folder / "students.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual([(row["name"], row["generations"], row["worlds"], row["notes"], row["joined"]) for row in rows],
+        self.assertEqual([tuple(row[column] for column in ("name", "generations", "worlds", "notes", "joined"))
+                          for row in rows],
                          [("Ada", "4", "1", "1", "true"), ("Bo Ek", "4", "2", "1", "true"),
                           ("Zoë", "4", "1", "1", "true")])
         self.server("replay", folder / f"{worlds[0]}.evod")
 
     def test_a_wrong_list_creates_nothing(self):
-        faults = self.evoctl("class", "create", "bio2", "--students", self.listed("Ada", "Bo", "Ada", "x" * 25), status=2)
+        wrong = self.listed("Ada", "Bo", "Ada", "x" * 25)
+        faults = self.evoctl("class", "create", "bio2", "--students", wrong, status=2)
         self.assertIn("list.csv, line 4: Ada stands in line 2 already", faults)
         self.assertIn("list.csv, line 5: the name has 25 characters", faults)
         self.assertIn("No such file", self.evoctl("class", "create", "bio2", "--students", "/nowhere/x", status=2))

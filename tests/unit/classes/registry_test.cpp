@@ -9,8 +9,10 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <random>
 
 namespace evod::classes {
@@ -56,6 +58,27 @@ TEST_F(RegistryTest, OnlyItsOwnerCanReadTheFile) {
         ASSERT_EQ(::stat(path.c_str(), &about), 0) << path;
         EXPECT_EQ(about.st_mode & 0777, 0600u) << path;
     }
+}
+
+TEST_F(RegistryTest, NoByteKeepsADeletedName) {
+    const auto is_in_a_file = [&](const std::string& name) {
+        return std::ranges::any_of(fs::directory_iterator{folder}, [&](const auto& entry) {
+            std::ifstream in{entry.path(), std::ios::binary};
+            return std::string{std::istreambuf_iterator{in}, {}}.find(name) != std::string::npos;
+        });
+    };
+    Registry registry = open();
+    Class of = made("bio2");
+    of.members = {{.number = 1, .name = "Ada Lovelace", .slug = "a"}, {.number = 2, .name = "Bo Ek", .slug = "b"}};
+    of.last_number = 2;
+    ASSERT_TRUE(registry.store(of));
+    EXPECT_TRUE(is_in_a_file("Ada Lovelace"));
+    of.members[0].name = "x";
+    ASSERT_TRUE(registry.store(of));
+    EXPECT_FALSE(is_in_a_file("Ada Lovelace"));
+    EXPECT_TRUE(is_in_a_file("Bo Ek"));
+    ASSERT_TRUE(registry.erase("bio2"));
+    EXPECT_FALSE(is_in_a_file("Bo Ek"));
 }
 
 TEST_F(RegistryTest, WithoutAFileItWorksInMemory) {

@@ -47,6 +47,15 @@ TEST(PageLink, ContainsAMoment) {
     EXPECT_EQ(link_of(page, {.world = "a", .organism = 0}), page + "#world=a&island=0&organism=0");
 }
 
+TEST(PageLink, ReportsLinksThatLeadToThisMachineOnly) {
+    for (const char* link : {"http://localhost:7745/#join=A", "https://127.0.0.1/", "http://[::1]:7745/#join=A"}) {
+        EXPECT_TRUE(is_of_this_machine(link)) << link;
+    }
+    for (const char* link : {"http://lab:7745/#join=localhost", "https://127.example/", "http://[::2]/", "", "x"}) {
+        EXPECT_FALSE(is_of_this_machine(link)) << link;
+    }
+}
+
 TEST(PageLink, OfAReplayNamesItsOriginal) {
     evod::v1::WorldInfo world;
     world.set_name("default");
