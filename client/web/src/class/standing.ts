@@ -31,7 +31,7 @@ export function standing_of(table: HistoryTable): Standing {
   return {generation: table.last_generation, best, mean: means[means.length - 1] ?? NaN, stuck};
 }
 
-/** Sorts in place: by name; by fitness, the fittest first; or by need of help, the longest without improvement first. */
+/** Sorts in place: by name; by fitness, the fittest first; or by need of help, the longest stuck first. */
 export function sort_by < Of extends {
   name: string;
   standing: Standing
