@@ -31,12 +31,13 @@ export function standing_of(table: HistoryTable): Standing {
   return {generation: table.last_generation, best, mean: means[means.length - 1] ?? NaN, stuck};
 }
 
-/** Sorts in place: by name; by fitness, the fittest first; or by need of help, the longest without improvement first. */
-export function sort_by < Of extends {
+interface Ranked {
   name: string;
-  standing: Standing
+  standing: Standing;
 }
-> (students: Of[], order: Order): Of[] {
+
+/** Sorts in place: by name; by fitness, the fittest first; or by need of help, the longest stuck first. */
+export function sort_by<Of extends Ranked>(students: Of[], order: Order): Of[] {
   const by_name = (one: Of, other: Of): number => one.name.localeCompare(other.name, undefined, {numeric: true});
   const value = ({standing: {best, stuck}}: Of): number => order === "help" ? stuck :
     Number.isFinite(best)                                                   ? best :
