@@ -1,7 +1,8 @@
-// LessonPlayer: plays a lesson in a world: sends what its steps do, follows the run, observes, and writes the notes. No DOM.
+// LessonPlayer: plays a lesson in a world: sends what its steps do, follows the run, observes, and writes the notes.
+// No DOM.
 //
-// What the user has done is in the notes of the run; this tab remembers them too. So a lesson goes on after a reload, and
-// notes that could not be written, or that belong to the run before a reset, are written later, in their order.
+// What the user has done is in the notes of the run; this tab remembers them too. So a lesson goes on after a reload,
+// and notes that could not be written, or that belong to the run before a reset, are written later, in their order.
 import type {ParameterSet, WorldInfo} from "../core/protocol";
 import {read_export} from "../world/run_export";
 import type {Server} from "../world/server";

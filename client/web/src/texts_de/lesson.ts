@@ -9,8 +9,8 @@ export const lesson_texts: typeof english.lesson_texts = {
   language: "de",
 
   about:
-    "Eine Lektion erklärt, fragt nach deiner Vorhersage, lässt die Welt laufen und vergleicht. Was du vorhersagst und " +
-    "beobachtest, bleibt in der Laufdatei.",
+    "Eine Lektion erklärt, fragt nach deiner Vorhersage, lässt die Welt laufen und vergleicht. Was du vorhersagst " +
+    "und beobachtest, bleibt in der Laufdatei.",
   list: "Lektionen",
   minutes: (count) => `${count} Minuten`,
   none: "Dieser Server hat keine Lektionen.",
