@@ -1,5 +1,5 @@
-"""Lessons in the page. Lesson: what a teacher does by docs/TUTORIAL_TEACHER.md has the results that the document states;
-tests/docs runs the commands of the document. Lessons, GermanLessons: the panel "Lesson" plays the files of lessons."""
+"""Lessons in the page. Lesson: what a teacher does by docs/TUTORIAL_TEACHER.md has the results that the document
+states; tests/docs runs the commands of the document. Lessons, GermanLessons: the panel "Lesson" plays lesson files."""
 import json
 import pathlib
 import re
@@ -282,9 +282,10 @@ class Lessons(PlayedCase):
                            ("mouseReleased", 0.9, 0.2)):
             browser.cdp("Input.dispatchMouseEvent", type=kind, x=left + x * width, y=top + y * height, button="left",
                         buttons=1, clickCount=1)
-        values = browser.wait(f"""(() => {{ const values = [...document.querySelectorAll("{PANEL} .lesson-values .field")]
-            .map((field) => Number(field.value)).filter((value) => value > 0); return values.length > 2 && values; }})()""",
-                              "the values of the curve")
+        values = browser.wait(f"""(() => {{
+            const fields = [...document.querySelectorAll("{PANEL} .lesson-values .field")];
+            const values = fields.map((field) => Number(field.value)).filter((value) => value > 0);
+            return values.length > 2 && values; }})()""", "the values of the curve")
         self.assertEqual(values, sorted(values))
 
     def test_the_handout_has_space_for_predictions(self):

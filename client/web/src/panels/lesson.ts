@@ -156,6 +156,9 @@ class LessonView {
     set_text(this.#why, why === "" ? "" : frozen ? why : texts.read_only(why));
     this.#take_part.hidden = why === "" || server.access.taking_part || !server.access.may_take_part;
     this.#show_elsewhere(player, world.name);
+    if (!is_begun && why === "") {
+      this.#step = null; // the user reads no longer, but can begin
+    }
     const is_intro = !is_begun && this.#step === null;
     this.#intro.hidden = !is_intro;
     this.#body.hidden = is_intro;

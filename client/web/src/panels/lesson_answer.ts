@@ -18,7 +18,7 @@ import {CurvePlot, type Kind, legend, number_line} from "./lesson_plot";
 import {prediction_words} from "./lesson_words";
 
 /** The elements that show the answer of a step; none if it compares nothing. */
-export function answer_elements(lesson: Lesson, course: Course, step: number): HTMLElement[] {
+export function answer_elements(lesson: Lesson, course: Course, step: number): Element[] {
   const answer = course.answer(step), of = lesson.steps[step]!;
   if (answer === null) {
     return [];
@@ -34,7 +34,7 @@ function unit_of(question: Question|undefined): string {
   return question?.kind === "number" ? question.unit ?? "" : "";
 }
 
-function comparison(lesson: Lesson, course: Course, step: Step, question: Question, answer: Answer): HTMLElement[] {
+function comparison(lesson: Lesson, course: Course, step: Step, question: Question, answer: Answer): Element[] {
   switch (question.kind) {
     case "number":
       return number_elements(question, answer, step);
@@ -48,7 +48,7 @@ function comparison(lesson: Lesson, course: Course, step: Step, question: Questi
       const words = [texts.curve_apart(answer.apart ?? 0), answer.passed ? texts.close : texts.far].join(" ");
       const plot = new CurvePlot(question, words);
       plot.show([{kind: "predicted", points: answer.predicted as Point[]}, {kind: "observed", points: observed}]);
-      return [legend(["predicted", "observed"]), plot.element as unknown as HTMLElement, h("p", {}, words)];
+      return [legend(["predicted", "observed"]), plot.element, h("p", {}, words)];
     }
     case "sentence":
       return [];
@@ -59,7 +59,7 @@ function facts(rows: readonly(readonly[string, string])[]): HTMLElement {
   return h("dl", {class: "lesson-facts"}, ...rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
 }
 
-function number_elements(question: Question&{kind: "number"}, answer: Answer, step: Step): HTMLElement[] {
+function number_elements(question: Question&{kind: "number"}, answer: Answer, step: Step): Element[] {
   const {unit = ""} = question, predicted = answer.predicted as number, observed = answer.observed as number;
   const shows_law =
     answer.law !== undefined && step.check !== undefined && "near" in step.check && step.law?.of === step.check.near;
@@ -70,7 +70,7 @@ function number_elements(question: Question&{kind: "number"}, answer: Answer, st
   const shown = Number(observed.toPrecision(4));
   return [
     facts([[texts.predicted, with_unit(predicted, unit)], [texts.observed, with_unit(shown, unit)]]), h("p", {}, words),
-    number_line(question, numbers, words) as unknown as HTMLElement,
+    number_line(question, numbers, words),
     legend(numbers.map(({kind}) => kind).sort((a, b) => kinds.indexOf(a) - kinds.indexOf(b)))
   ];
 }
@@ -91,7 +91,7 @@ function value_words(course: Course, name: string|undefined): string {
   return typeof value === "number" ? significant(value) : "–";
 }
 
-function choice_elements(options: readonly string[], course: Course, step: Step, answer: Answer): HTMLElement[] {
+function choice_elements(options: readonly string[], course: Course, step: Step, answer: Answer): Element[] {
   const names = names_of(step);
   const mark = (i: number):
     string => [i === answer.predicted ? `◆ ${texts.predicted}` : "", i === answer.observed ? `● ${texts.observed}` : ""]
@@ -107,7 +107,7 @@ function choice_elements(options: readonly string[], course: Course, step: Step,
   ];
 }
 
-function order_elements(options: readonly string[], course: Course, step: Step, answer: Answer): HTMLElement[] {
+function order_elements(options: readonly string[], course: Course, step: Step, answer: Answer): Element[] {
   const names = names_of(step), predicted = answer.predicted as number[], observed = answer.observed as number[];
   const rows = observed.map(
     (option, place) =>
@@ -121,7 +121,7 @@ function order_elements(options: readonly string[], course: Course, step: Step, 
   ];
 }
 
-function law_elements(step: Step, course: Course, {law, error}: Answer, question: Question|undefined): HTMLElement[] {
+function law_elements(step: Step, course: Course, {law, error}: Answer, question: Question|undefined): Element[] {
   if (step.law === undefined) {
     return [];
   }
@@ -138,7 +138,7 @@ function law_elements(step: Step, course: Course, {law, error}: Answer, question
 }
 
 /** A table of all predictions, and what was observed. */
-export function summary_elements(lesson: Lesson, course: Course): HTMLElement[] {
+export function summary_elements(lesson: Lesson, course: Course): Element[] {
   const answers = lesson.steps.map((_, i) => course.answer(i));
   const rows = lesson.steps.flatMap(({predict}) => {
     const given = predict && course.predictions.get(predict.id);

@@ -2,7 +2,7 @@
 import {type CurveQuestion, type Point} from "../lesson/lesson_file";
 import {nice_step, shown_number} from "../texts/numbers";
 import {lesson_texts as texts} from "../texts/lesson";
-import {svg} from "../widgets/dom";
+import {h, svg} from "../widgets/dom";
 import {svg_label, svg_line} from "../widgets/svg";
 
 const width = 360, height = 230, left = 50, right = 348, top = 10, bottom = 190;
@@ -89,16 +89,10 @@ function mark(kind: Kind, [x, y]: Point): SVGElement {
 /** The signs of the kinds with their words. */
 export function legend(kinds: readonly Kind[]): HTMLElement {
   const words = {predicted: texts.predicted, observed: texts.observed, theory: texts.theory};
-  const element = document.createElement("p");
-  element.className = "lesson-legend";
-  element.append(...kinds.map((kind) => {
-    const entry = document.createElement("span");
-    entry.append(
-      svg("svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"}, mark(kind, [8, 8])),
-      words[kind]);
-    return entry;
+  return h("p", {class: "lesson-legend"}, ...kinds.map((kind) => {
+    const sign = svg("svg", {viewBox: "0 0 16 16", width: 16, height: 16, "aria-hidden": "true"}, mark(kind, [8, 8]));
+    return h("span", {}, sign, words[kind]);
   }));
-  return element;
 }
 
 /** Shows numbers on a line.

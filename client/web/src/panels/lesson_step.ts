@@ -36,6 +36,7 @@ export class StepView {
   readonly #answer = h("section", {class: "lesson-answer", role: "status", "aria-live": "polite"});
   #shown_answer = "";
   #is_locked = false;
+  #is_shown = false; // refresh() has been called
 
   constructor(player: LessonPlayer, step: number, notify: Notify, drafts: Map<number, QuestionField>) {
     this.#player = player;
@@ -85,6 +86,7 @@ export class StepView {
     this.#show_progress(is_running);
     set_text(this.#problem, player.problem);
     this.#show_answer(is_begun && phase === "done");
+    this.#is_shown = true;
     player.retry();
   }
 
@@ -99,7 +101,7 @@ export class StepView {
   #show_changes(world: ViewedWorld): void {
     const {lesson, server, world: of_lesson} = this.#player, action = lesson.steps[this.#step]!.do;
     const {set} = world.parameters;
-    const parameters = set === null || world.name !== of_lesson ?
+    const parameters = set === null || world.shown !== of_lesson ?
       [] :
       changed(set_parameters(server.parameters, set, action?.set ?? {}));
     const lines = [...parameters.map(change_words), ...(action?.reset ? [texts.resets] : [])];
@@ -138,11 +140,15 @@ export class StepView {
     if (shown === this.#shown_answer) {
       return;
     }
+    const is_new = this.#shown_answer === "" && this.#is_shown;
     this.#shown_answer = shown;
     const is_last = is_done && step === lesson.steps.length - 1 && course.is_finished;
     this.#answer.replaceChildren(
       ...(is_done ? answer_elements(lesson, course, step) : []),
       ...(is_last ? [...summary_elements(lesson, course), h("p", {}, texts.finished)] : []));
+    if (is_new) {
+      this.#answer.scrollIntoView({block: "nearest"});
+    }
   }
 }
 
