@@ -73,6 +73,11 @@ export class LessonPlayer {
       "";
   }
 
+  /** Whether the generations of a step have run, so that only the observations may be missing. */
+  has_performed(step: number): boolean {
+    return this.#performed.has(step);
+  }
+
   /** Whether notes wait to be written. */
   get has_unwritten(): boolean {
     return this.#notes.some(({run}) => run !== (this.info?.run_id ?? ""));

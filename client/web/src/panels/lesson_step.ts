@@ -28,6 +28,7 @@ export class StepView {
   readonly #changes = h("ul", {class: "lesson-changes"});
   readonly #fast = h("input", {type: "checkbox"});
   readonly #run: HTMLButtonElement;
+  readonly #act: string; // what it does
   readonly #progress = h("div", {class: "lesson-progress", hidden: true});
   readonly #bar = h("progress", {max: 1});
   readonly #runs = h("p", {role: "status"});
@@ -50,8 +51,8 @@ export class StepView {
     this.#give = guarded_button(texts.give, notify, () => this.#predict(), "button button-primary");
     const {run} = action ?? {};
     this.#fast.checked = (run ?? 0) > watched_generations_max;
-    const act = action === undefined ? texts.observe : run === undefined ? texts.apply : texts.run(run);
-    this.#run = guarded_button(act, notify, () => void player.perform(this.#fast.checked), "button button-primary");
+    this.#act = action === undefined ? texts.observe : run === undefined ? texts.apply : texts.run(run);
+    this.#run = guarded_button(this.#act, notify, () => this.#perform(), "button button-primary");
     this.#resume = guarded_button(texts.resume, notify, () => void player.resume());
     this.#action.append(
       ...(action === undefined ? [] : [h("h4", {}, texts.changes), this.#changes]),
@@ -79,6 +80,7 @@ export class StepView {
     set_allowed(this.#give, why_not || (step > course.open ? texts.first_predict : ""));
     set_text(this.#given, given === undefined ? "" : player.has_unwritten ? texts.unwritten : texts.given);
     this.#action.hidden = !is_begun || is_running || phase !== "do";
+    set_text(this.#run, player.has_performed(step) ? texts.observe : this.#act);
     set_allowed(this.#run, why_not || (player.is_busy ? texts.loading : ""));
     if (!this.#action.hidden) {
       this.#show_changes(world);
@@ -88,6 +90,12 @@ export class StepView {
     this.#show_answer(is_begun && phase === "done");
     this.#is_shown = true;
     player.retry();
+  }
+
+  /** Performs the step, or only observes if its generations have run. */
+  #perform(): void {
+    const player = this.#player;
+    void (player.has_performed(this.#step) ? player.observe() : player.perform(this.#fast.checked));
   }
 
   #predict(): void {
