@@ -12,6 +12,7 @@ import {event_text, noticed_events} from "../world/event_text";
 import {EvolutionButton} from "./evolution_button";
 import {Introduction} from "./introduction";
 import {LinkFollower} from "./link_follower";
+import {chosen_lesson, lesson_in, with_lesson} from "../world/lesson_link";
 import {link_of} from "../world/link";
 import {fork_name} from "../world/names";
 import type {PlacedModel} from "../world/panel_context";
@@ -111,7 +112,10 @@ export class App implements KeyTarget {
 
   /** Shows the moment or the class that the fragment of an address names; does nothing if it names none. */
   follow_link(hash: string): void {
-    const of_class = new URLSearchParams(hash.slice(1)).get("class");
+    const of_class = new URLSearchParams(hash.slice(1)).get("class"), lesson = lesson_in(hash);
+    if (lesson !== "") {
+      this.open("lesson", {lesson});
+    }
     if (of_class === null) {
       void this.#link.follow(hash);
     } else {
@@ -232,7 +236,7 @@ export class App implements KeyTarget {
   /** The link to the moment that a world shows; empty before the first snapshot. */
   link(world = this.world()): string {
     const {snapshot} = world;
-    return !snapshot ? "" : link_of(location.origin + location.pathname, {
+    const link = !snapshot ? "" : link_of(location.origin + location.pathname, {
       world: world.name,
       generation: snapshot.generation,
       tick: snapshot.generation_tick,
@@ -240,18 +244,19 @@ export class App implements KeyTarget {
       organism: world.selection.id,
       rate: world.feed.has_rate ? world.feed.rate_hz : null,
     });
+    return with_lesson(link, chosen_lesson());
   }
 
   reload(): void {
     const {name, past, snapshot} = this.world();
-    const link = past.is_own_replay ? this.link() : link_of(location.origin + location.pathname, {
+    const link = past.is_own_replay ? this.link() : with_lesson(link_of(location.origin + location.pathname, {
       world: name,
       generation: null,
       tick: null,
       island: snapshot && snapshot.island_count > 1 ? snapshot.island : null,
       organism: null,
       rate: null,
-    });
+    }), chosen_lesson());
     if (link) {
       history.replaceState(null, "", link);
     }

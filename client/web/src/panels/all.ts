@@ -26,6 +26,7 @@ export const panels: ((context: PanelContext) => Panel)[] = [
   later("family", texts.family, ({FamilyPanel}, context) => new FamilyPanel(context)),
   later("plots", texts.plots, ({PlotsPanel}, context) => new PlotsPanel(context)),
   (context) => new EventsPanel(context),
+  later("lesson", texts.lesson, ({LessonPanel}, context) => new LessonPanel(context)),
   later("freezer", texts.freezer, ({FreezerPanel}, context) => new FreezerPanel(context)),
   later("physics", texts.physics, ({PhysicsPanel}, context) => new PhysicsPanel(context)),
 ];

@@ -9,6 +9,7 @@ export {FamilyPanel} from "./family";
 export {FreezerPanel} from "./freezer";
 export {GlassBoxPanel} from "./glass_box";
 export {Help} from "./help";
+export {LessonPanel} from "./lesson";
 export {new_world_dialog} from "./new_world";
 export {OrganismPanel} from "./organism";
 export {ParametersPanel} from "./parameters";

@@ -9,6 +9,7 @@ export const panels_texts = {
   family: "Family tree",
   plots: "Plots",
   physics: "Physics",
+  lesson: "Lesson",
   freezer: "Freezer",
   class: "Class",
   loading: "Loading …",

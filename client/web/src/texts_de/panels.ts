@@ -11,6 +11,7 @@ export const panels_texts: typeof english.panels_texts = {
   family: "Stammbaum",
   plots: "Diagramme",
   physics: "Physik",
+  lesson: "Lektion",
   freezer: "Gefrierfach",
   class: "Klasse",
   loading: "Wird geladen …",
