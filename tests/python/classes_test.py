@@ -89,7 +89,7 @@ class Teacher(unittest.TestCase):
         self.assertEqual([violation.field for violation in raised.exception.violations], ["names[0]"])
         self.bio2.rename("Ada", "Ada L.")
         self.bio2.kick("Ada L.")
-        until(lambda: not lab._link.core.connected)
+        until(lambda: not lab._link.core.connected, "the end of the session")
         self.bio2.readmit(1)
         with evod.join(self.lab.address, self.bio2.new_personal_code("Ada L.")) as again:
             self.assertEqual(again.membership.world, "bio2_ada")
