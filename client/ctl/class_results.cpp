@@ -224,8 +224,14 @@ void compare_class(const Common& common, const CompareOptions& options) {
     csv = csv_line(options.summary ? summary_columns : columns);
     for (const v1::ClassMember& member : info.members()) {
         v1::History history = history_of(caller, member);
-        const std::vector<std::string> summary = summary_of(member, results_of(history));
-        table.add(summary);
+        const Results results = results_of(history);
+        const std::vector<std::string> summary = summary_of(member, results);
+        std::vector<std::string> row = summary;
+        if (results.generations > 0) {
+            row[row.size() - 2] = fitness_text(results.best);
+            row.back() = fitness_text(results.last_mean);
+        }
+        table.add(row);
         if (options.summary) {
             csv += csv_line(summary);
             continue;
