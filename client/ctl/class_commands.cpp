@@ -377,7 +377,7 @@ void add_create(command_line::Command& classes, const Common& common) {
         .add_option("--seed", &options.seed,
                     "Seed of the worlds; default: the seed in the --experiment file, otherwise a random seed")
         .check(whole_number);
-    command.add_option("--seeds", &options.seeds, "same: all worlds begin alike; own: each member has another seed")
+    command.add_option("--seeds", &options.seeds, "same: equal seeds; own: each member has another seed")
         .choices({"same", "own"})
         .show_default();
     command.add_option("--range", &options.ranges,
@@ -590,8 +590,7 @@ struct NoteOptions {
 } // namespace
 
 void add_class_commands(command_line::Command& app, const Common& common) {
-    auto& classes =
-        app.add_command("class", "Worlds for a class: one for each student, under one teacher").group("Classes");
+    auto& classes = app.add_command("class", "Lead a class, whose students have a world each").group("Classes");
     add_create(classes, common);
     add_state_commands(classes, common);
     add_for_each_commands(classes, common);

@@ -21,7 +21,7 @@ v1::ClassInfo class_named(Caller& caller, const std::string& name) {
     }
     const auto near = text::nearest(name, names);
     throw Stop{ExitCode::Refused,
-               "there is no class " + name + (near.empty() ? "" : "; did you mean " + near.front() + "?")};
+               "no class has the name " + name + (near.empty() ? "" : "; did you mean " + near.front() + "?")};
 }
 
 const v1::ClassMember& member_named(const v1::ClassInfo& info, const std::string& word) {

@@ -172,7 +172,7 @@ class ByCommands(Classes):
         self.assertEqual(self.world().seed, 9)
         self.assertIn("deleted class bio2", self.evoctl("class", "delete", "bio2"))
         self.assertIn("no classes", self.evoctl("class", "list"))
-        self.assertIn("there is no class bio2", self.evoctl("class", "show", "bio2", status=1))
+        self.assertIn("no class has the name bio2", self.evoctl("class", "show", "bio2", status=1))
 
     def test_a_teacher_sees_the_own_classes(self):
         self.server_.end()
