@@ -64,7 +64,7 @@ def class_info(name: str) -> Plan[ClassInfo]:
     for info in infos:
         if info.name == name:
             return info
-    raise NotFound(f"there is no class '{name}'; the classes are: {', '.join(i.name for i in infos) or 'none'}")
+    raise NotFound(f"no class has the name '{name}'; the classes are: {', '.join(i.name for i in infos) or 'none'}")
 
 
 def create_class(
