@@ -73,7 +73,7 @@ std::string template_of(const v1::CreateWorld& given, const Class& of, Violation
     v1::CreateWorld& world = *request.mutable_create_world();
     world = given;
     world.set_name("world");
-    request.set_client_key("class"); // a command must have one
+    request.set_client_key("template"); // a command must have one
     const auto command = protocol::to_command(request, {runtime::draw_seed(), runtime::draw_run_id()});
     if (!command) {
         Violations without_value;

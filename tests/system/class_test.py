@@ -214,7 +214,7 @@ class Joining(Case):
         self.assertEqual(len(took), 40)
         print(f"40 joins at once: first snapshot after {sorted(took)[20]:.3f} s (median), {max(took):.3f} s (last)")
         self.assertEqual(len(set(seeds.values())), 40, "seeds of their own")
-        self.assertLess(max(took), 20 if os.environ.get("SANITIZED") else 5)  # 2 s on a machine that is not busy
+        self.assertLess(max(took), 20 if os.environ.get("SANITIZED") else 2)
 
 
 class Managing(Case):
@@ -357,7 +357,7 @@ class Managing(Case):
     def test_qr_codes_are_read_by_another_program(self):
         server = self.serve()
         teacher = self.user(server, "frau_k")
-        texts = ["http://lab:7745/#join=KTRMXB", "ä", "x" * 300]
+        texts = ["http://lab:7745/#join=KTRMXB", "KTRMXB", "x" * 300]
         made = teacher.call(make_qr_codes=c.MakeQrCodes(texts=texts)).qr_codes.codes
         self.assertEqual(len(made), 3)
         try:
