@@ -132,8 +132,12 @@ class Fields {
             allowed += (allowed.empty() ? "" : ", ") + name;
         }
         for (const JsonMember* member : unread_) {
-            violations_.push_back({parameters::with_line(path_of(member->name), member->line),
-                                   allowed + text::did_you_mean(member->name, names_), base::unknown_name});
+            std::string meant = text::did_you_mean(member->name, names_);
+            if (!meant.empty()) {
+                meant.pop_back(); // violation_text() adds the question mark
+            }
+            violations_.push_back(
+                {parameters::with_line(path_of(member->name), member->line), allowed + meant, base::unknown_name});
         }
     }
     Violations& violations() { return violations_; }

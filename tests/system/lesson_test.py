@@ -5,6 +5,7 @@ import io
 import json
 import pathlib
 import re
+import sys
 import tempfile
 import unittest
 
@@ -127,4 +128,4 @@ class Class(export_test.Runs):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -31,7 +31,7 @@ std::string with_change(const std::string& from, const std::string& to) {
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
 }
-std::string refusal_of(const std::string& text) {
+std::string lesson_refusal(const std::string& text) {
     const auto lesson = parse_lesson(text);
     return lesson ? "none" : to_text(lesson.error());
 }
@@ -61,11 +61,11 @@ TEST(LessonFile, IsReadCompletely) {
 TEST(LessonFile, IsRefusedWithPathLineAndWhatIsAllowed) {
     const auto expect = [](const std::string& from, const std::string& to, const std::string& path,
                            const std::string& allowed) {
-        EXPECT_THAT(refusal_of(with_change(from, to)), AllOf(HasSubstr(path), HasSubstr(allowed))) << to;
+        EXPECT_THAT(lesson_refusal(with_change(from, to)), AllOf(HasSubstr(path), HasSubstr(allowed))) << to;
     };
     expect(R"("minutes": 20)", R"("minutes": 2)", "minutes (line 1): got 2", "5 to 90");
     expect(R"("needs": "C", )", "", "needs (line 1): got nothing", "required");
-    expect(R"("seed": 7)", R"("seeds": 7)", "seeds (line 2): unknown name", "did you mean seed");
+    expect(R"("seed": 7)", R"("seeds": 7)", "seeds (line 2): unknown name", "did you mean needs, seed or steps?");
     expect(R"("population_size": 30)", R"("population_size": {"1": 3, "9": 4})", "experiment", "no schedule");
     expect(R"("population_size": 30)", R"("population_size": 0)", "experiment.population_size (line 1)", "1 to");
     expect(R"("population_size": 30)", R"("fitness": "external")", "experiment.fitness", "life");
@@ -85,9 +85,9 @@ TEST(LessonFile, IsRefusedWithPathLineAndWhatIsAllowed) {
     expect(R"("expected": 1)", R"("expected": 2)", "steps[1].predict.expected (line 10)", "0 to 1");
     expect(R"("id": "pick")", R"("id": "guess")", "steps[1].predict.id", "an id that no earlier prediction has");
     expect(R"("of": "before")", R"("of": "nothing")", "steps[0].law.of (line 8)", "the name of a number");
-    EXPECT_THAT(refusal_of("[]"), HasSubstr("expected a JSON object"));
-    EXPECT_THAT(refusal_of("{"), HasSubstr("not JSON: line 1"));
-    EXPECT_THAT(refusal_of(std::string(70'000, ' ')), HasSubstr("too long"));
+    EXPECT_THAT(lesson_refusal("[]"), HasSubstr("expected a JSON object"));
+    EXPECT_THAT(lesson_refusal("{"), HasSubstr("not JSON: line 1"));
+    EXPECT_THAT(lesson_refusal(std::string(70'000, ' ')), HasSubstr("too long"));
 }
 
 TEST(LessonFile, PutsEarlierNumbersIntoExpressions) {

@@ -10,8 +10,13 @@ namespace {
 using testing::HasSubstr;
 
 TEST(LessonTexts, OfAHandoutAreSafeAndHaveSpaceForPredictions) {
-    Lesson lesson{.title = "A < B", .needs = "C", .minutes = 20, .goals = {"D & E"}, .parameters = {}, .steps = {}};
-    LessonStep step{.title = "F", .text = "One *two* **three** `four`.\n\n- <five>\n- six\n\nSeven"};
+    Lesson lesson;
+    lesson.title = "A < B";
+    lesson.needs = "C";
+    lesson.goals = {"D & E"};
+    LessonStep step;
+    step.title = "F";
+    step.text = "One *two* **three** `four`.\n\n- <five>\n- six\n\nSeven";
     step.run = 9;
     step.predict = Prediction{.id = "x", .ask = "G?"};
     lesson.steps.push_back(step);
