@@ -34,7 +34,7 @@ class Class(Case):
         self.teacher = self.browser
         admin, secret = self.token("ada", access.ADMIN), access.token_command(
             "add", "kay", "--role", "teacher", data=self.folder).strip()
-        self.served = self.start("--require-token", generation_s=1.0)
+        self.served = self.start("--require-token", generation_s=1.0, population_size=50)
         self.admin = self.come(self.served, admin)
         for browser in (self.teacher, *self.students):
             browser.driver.get(self.page(self.served))

@@ -84,7 +84,7 @@ export const for_all_texts: typeof english.for_all_texts = {
   speed: "Tempo aller …",
   speed_done: (speed) => `Alle Welten haben das Tempo ${speed}`,
   generations: "Anzahl der Generationen",
-  run_generations: "Generationen, alle",
+  run_generations: "Generationen",
   generations_done: (count) => `Alle Welten laufen ${count === 1 ? "1 Generation" : `${count} Generationen`}`,
   parameter: "Parameter …",
   value_of: (parameter) => `Wert von ${parameter}`,
