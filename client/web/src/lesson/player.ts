@@ -114,8 +114,8 @@ export class LessonPlayer {
 
   predict(value: Prediction): Promise<void> {
     const step = this.step, id = this.lesson.steps[step]!.predict!.id;
-    this.#add({kind: "lesson_prediction", lesson: this.name, step: step + 1, id, value});
     return this.#attempt(async () => {
+      this.#add({kind: "lesson_prediction", lesson: this.name, step: step + 1, id, value});
       await this.#write();
       if (this.course.phase(step) === "do" && this.lesson.steps[step]!.do === undefined) {
         await this.#observe(step);

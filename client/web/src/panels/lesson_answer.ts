@@ -45,7 +45,7 @@ function comparison(lesson: Lesson, course: Course, step: Step, question: Questi
     case "curve": {
       const places = step.check !== undefined && "curve" in step.check ? places_of(lesson, step.check.curve) : [];
       const observed = (answer.observed as number[]).map((y, i): Point => [places[i]!, y]);
-      const words = [texts.curve_apart(answer.apart ?? 0), answer.passed ? texts.close : texts.far].join(" ");
+      const words = [texts.curve_apart(answer.apart ?? 0), closeness(answer)].join(" ");
       const plot = new CurvePlot(question, words);
       plot.show([{kind: "predicted", points: answer.predicted as Point[]}, {kind: "observed", points: observed}]);
       return [legend(["predicted", "observed"]), plot.element, h("p", {}, words)];
@@ -59,11 +59,16 @@ function facts(rows: readonly(readonly[string, string])[]): HTMLElement {
   return h("dl", {class: "lesson-facts"}, ...rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
 }
 
+/** What follows the words about the distance. */
+function closeness({passed, apart}: Answer): string {
+  return apart === 0 ? "" : passed ? texts.close : texts.far;
+}
+
 function number_elements(question: Question&{kind: "number"}, answer: Answer, step: Step): Element[] {
   const {unit = ""} = question, predicted = answer.predicted as number, observed = answer.observed as number;
   const shows_law =
     answer.law !== undefined && step.check !== undefined && "near" in step.check && step.law?.of === step.check.near;
-  const words = [texts.apart(answer.apart ?? 0, observed, unit), answer.passed ? texts.close : texts.far].join(" ");
+  const words = [texts.apart(answer.apart ?? 0, observed, unit), closeness(answer)].join(" ");
   const theory = shows_law ? [{kind: "theory" as Kind, value: answer.law!, error: answer.error ?? 0}] : [];
   const numbers =
     [...theory, {kind: "predicted" as Kind, value: predicted}, {kind: "observed" as Kind, value: observed}];

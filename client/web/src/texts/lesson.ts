@@ -85,7 +85,7 @@ export const lesson_texts = {
   no_value: "This run has no such value.",
   no_comparison: "The run does not give all values that are needed to compare.",
   apart: (apart: number, observed: number, unit: string) => {
-    const percent = observed === 0 ? "" : ` (${significant(Math.abs(apart / observed) * 100)} %)`;
+    const percent = observed === 0 ? "" : ` (${significant(Math.abs(apart / observed) * 100)}\u00a0%)`;
     return apart === 0 ? "Your prediction is exact." :
                          `Your prediction is ${with_unit(Number(Math.abs(apart).toPrecision(3)), unit)} ${
                            apart > 0 ? "too high" : "too low"}${percent}.`;

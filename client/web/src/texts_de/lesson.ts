@@ -82,7 +82,7 @@ export const lesson_texts: typeof english.lesson_texts = {
   no_value: "Dieser Lauf hat keinen solchen Wert.",
   no_comparison: "Der Lauf liefert nicht alle Werte, die zum Vergleich nötig sind.",
   apart: (apart, observed, unit) => {
-    const percent = observed === 0 ? "" : ` (${significant(Math.abs(apart / observed) * 100)} %)`;
+    const percent = observed === 0 ? "" : ` (${significant(Math.abs(apart / observed) * 100)}\u00a0%)`;
     const size = with_unit(Number(Math.abs(apart).toPrecision(3)), unit);
     return apart === 0 ? "Deine Vorhersage stimmt genau." :
                          `Deine Vorhersage liegt um ${size} ${apart > 0 ? "zu hoch" : "zu niedrig"}${percent}.`;
