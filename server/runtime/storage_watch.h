@@ -3,9 +3,9 @@
 //   Full run file          the world, which belongs to a class, waits until it is reset or deleted.
 //   Slow or failing disk   all worlds wait once the write queue is full. Commands are refused while writing fails.
 //   Damaged run file       the world becomes a damaged world. The storage thread has refused its unrecorded commands.
-//   Displaced run file     the world waits, and its commands are refused, until its file is back. A longer wait would cost
-//                          the other worlds room in the write queue, so it does not run on as it does while the whole
-//                          disk fails.
+//   Displaced run file     the world waits, and its commands are refused, until its file is back. A longer wait would
+//                          cost the other worlds room in the write queue, so it does not run on as it does while the
+//                          whole disk fails.
 //
 // Owner        a simulation loop, on its thread.
 #pragma once

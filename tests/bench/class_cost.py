@@ -114,9 +114,9 @@ def main():
             everyone = c.ForEachWorld(run=c.Run())
             setattr(everyone, "class", "bio")
             teacher.call(for_each_world=everyone)
-            users = [[one.welcome.membership.token, [one.welcome.membership.world], 30, stream_pb2.DETAIL_FULL] for one in members]
-            users.append([tokens["teacher"], [one.welcome.membership.world for one in members], 5,
-                          stream_pb2.DETAIL_DOTS])
+            own = {one.welcome.membership.token: one.welcome.membership.world for one in members}
+            users = [[token, [world], 30, stream_pb2.DETAIL_FULL] for token, world in own.items()]
+            users.append([tokens["teacher"], list(own.values()), 5, stream_pb2.DETAIL_DOTS])
             for one in members[1:]:
                 one.socket.close()
             viewers = subprocess.Popen([sys.executable, __file__, options.evod, options.messages, "--viewers",
@@ -128,11 +128,9 @@ def main():
                 hog, own = members[0], members[0].welcome.membership.world
                 hog.socket.close()
                 hog = Client(server.port, token=members[0].welcome.membership.token)
-                ranges = {state.name: state for state in hog.call(
-                    get_parameters=c.GetParameters(world=own)).parameters.parameters if state.HasField("max")}
-                largest = {name: int(state.max) for name, state in ranges.items()
-                           if state.value.HasField("count") and name in (
-                               "population_size", "food_count", "poison_count", "island_count", "crate_count")}
+                states = hog.call(get_parameters=c.GetParameters(world=own)).parameters.parameters
+                greedy = "population_size", "food_count", "poison_count", "island_count"
+                largest = {state.name: int(state.max) for state in states if state.name in greedy}
                 hog.call(set_parameters=c.SetParameters(world=own, parameters=assignments(
                     {**largest, "scale_with_population": True})))
                 hog.call(reset_world=c.ResetWorld(world=own))

@@ -108,8 +108,9 @@ class Class(Case):
         self.teacher.press("❄ Freeze")
         for browser in self.students:
             browser.wait_for_text("Your teacher has frozen the class.", ".banners")
-            run = browser.wait("[...document.querySelectorAll('.run-bar button')].find((e) => e.ariaDisabled === 'true')",
-                               "a greyed control")
+            run = browser.wait(
+                "[...document.querySelectorAll('.run-bar button')].find((e) => e.ariaDisabled === 'true')",
+                "a greyed control")
             self.assertEqual(run.get_attribute("title"), "Your teacher has frozen the class.")
         frozen = self.ticks()
         self.assertEqual(self.fox.request("run", world="bio2_fox").get("code"), "CODE_FAILED_PRECONDITION")
@@ -123,14 +124,15 @@ class Class(Case):
     def test_the_teacher_opens_a_world_and_returns(self):
         self.joined()
         self.tile("Fox").send_keys(Keys.ENTER)
-        self.teacher.wait("evod.app.world().name === 'bio2_fox' && evod.app.world().snapshot", "the world of the student")
+        self.teacher.wait("evod.app.world().name === 'bio2_fox' && evod.app.world().snapshot",
+                          "the world of the student")
         self.teacher.wait_for_text("You see the world of Fox (bio2).", ".banners")
         self.teacher.press("Run")
         waiting.until(lambda: self.ticks()["bio2_fox"] > 0, "the world runs")
         self.teacher.element("body").send_keys(Keys.ESCAPE)
         self.teacher.wait("document.activeElement.innerText.includes('Fox')", "the tile has the focus")
 
-    def test_a_removed_student_is_told_and_let_in_again(self):
+    def test_a_removed_student_learns_it_and_is_let_in_again(self):
         members = self.joined()
         self.teacher.press("Members")
         self.teacher.press("Remove: Owl")
@@ -202,11 +204,13 @@ class Class(Case):
         first.send_keys(Keys.ARROW_RIGHT)
         self.assertTrue(self.teacher.value(
             "document.activeElement === document.querySelectorAll('.wall-tile')[1]"))
-        self.assertRegex(self.teacher.value("document.activeElement.ariaLabel"), r"^\S.*, generation \d+, best fitness ")
+        self.assertRegex(self.teacher.value("document.activeElement.ariaLabel"),
+                         r"^\S.*, generation \d+, best fitness ")
         self.teacher.driver.switch_to.active_element.send_keys("f")
         self.teacher.wait_for_text("❄ frozen", ".wall-bar")
-        self.teacher.wait("document.querySelector('.class-wall [aria-live]').textContent.includes('The class is frozen.')",
-                          "the live region")
+        self.teacher.wait(
+            "document.querySelector('.class-wall [aria-live]').textContent.includes('The class is frozen.')",
+            "the live region")
         self.teacher.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
         self.teacher.wait("!document.querySelector('.class-wall')", "the page of the worlds")
 
