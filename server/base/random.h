@@ -39,8 +39,8 @@ enum class Purpose : std::uint32_t {
     SignFlip = 20,       // signs in a permutation test; island and generation are 0
     LatinHypercube = 21, // cells of a parameter sweep, keyed by parameter; island and generation are 0
     Heading = 22,        // headings of organisms with a network at the beginning of a generation
-    FirstFreeGenes = 23,     // the Latin hypercube of the first generation, keyed by gene
-    ClassMember = 24,        // seeds of the worlds of a class, keyed by the number of the member
+    FirstFreeGenes = 23, // the Latin hypercube of the first generation, keyed by gene
+    ClassMember = 24,    // seeds of the worlds of a class, keyed by the number of the member
     ScenarioTest = 1000, // tests and demonstrations
 };
 

@@ -24,7 +24,7 @@ TEST(ExperimentSummary, SaysWhatTheOrganismsTryToDo) {
         "50 organisms seek food (+25 health) and avoid poison (−40). Each loses 6 health per second and dies at 0. "
         "Fitness is the time lived plus the health at the end. On average, fitter organisms have more offspring "
         "(roulette selection).");
-    EXPECT_EQ(to_proto(parameters::ParameterSet::all_in_effect({})).summary(), experiment_summary({}));
+    EXPECT_EQ(to_proto(parameters::ParameterSet::all_in_effect({}), nullptr).summary(), experiment_summary({}));
 }
 
 TEST(ExperimentSummary, SaysThatNetworksSteerTheOrganisms) {

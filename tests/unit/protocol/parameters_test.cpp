@@ -35,7 +35,7 @@ TEST(ParameterMessage, ASetHasCurrentAndPendingValues) {
     parameters::ParameterSet set;
     set.requested.values.population_size = 60;
     set.revision = 9;
-    const auto message = to_proto(set);
+    const auto message = to_proto(set, nullptr);
     EXPECT_EQ(message.revision(), 9);
     EXPECT_EQ(static_cast<std::size_t>(message.parameters_size()), parameters::parameter_registry().size());
     for (const auto& state : message.parameters()) {
