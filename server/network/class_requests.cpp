@@ -470,6 +470,11 @@ Result<const Class*> ClassRequests::managed(const Session& session, const std::s
         .arguments = {{"class", name}}};
 }
 
+std::optional<base::Refusal> ClassRequests::refusal_of(const Session& session, const v1::ForEachWorld& request) const {
+    const auto of = managed(session, request.class_(), "for_each_world.class");
+    return of ? std::nullopt : std::optional{of.error()};
+}
+
 v1::ClassInfo ClassRequests::info_of(const Class& of) const {
     v1::ClassInfo info;
     info.set_name(of.name);

@@ -43,6 +43,9 @@ class ClassRequests {
     void begin();
     /// Handles a request that the session has admitted.
     void handle(Session& session, const v1::Request& request);
+    /// Returns why a ForEachWorld of this session is refused whatever its action is; nullopt: its class is one that the
+    /// session may change.
+    std::optional<base::Refusal> refusal_of(const Session& session, const v1::ForEachWorld& request) const;
     /// ClassAdmission::admit().
     std::optional<base::Result<AdmittedMember>> admit(const v1::Hello& hello) { return admission_.admit(hello); }
     /// Must be called when a session has ended.

@@ -181,6 +181,11 @@ void Dispatcher::serve(Session& session, v1::Request request) {
     }
     switch (protocol::kind_of(request)) {
     case v1::REQUEST_KIND_COMMAND:
+        if (request.has_for_each_world()) {
+            if (const auto refused = class_requests_.refusal_of(session, request.for_each_world())) {
+                return session.answer(protocol::refusing(id, *refused));
+            }
+        }
         return commands_.handle(session, request);
     case v1::REQUEST_KIND_QUERY:
         return query(session, std::move(request));

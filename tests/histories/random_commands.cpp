@@ -79,6 +79,13 @@ std::vector<v1::Request> RandomCommands::next(const Twins& twins) {
     if (kind < 93) {
         return {set_fitness(entry)}; // which is refused if it is not awaited
     }
+    if (kind < 94) {
+        v1::Request noted = request();
+        noted.mutable_add_note()->set_world(entry.name);
+        noted.mutable_add_note()->set_kind("remark");
+        noted.mutable_add_note()->set_text("a note");
+        return {noted};
+    }
     return control(entry);
 }
 

@@ -61,7 +61,7 @@ async def send_requests_of_classes(lab, world):
 
 async def send_every_request(lab):
     """The server must keep its runs and have one world."""
-    assert (await result(lab.describe())).limits.worlds_max == 64
+    assert (await result(lab.describe())).limits.worlds_max == 256
     assert len(await result(lab.registry())) > 50
     assert any(family.name == "evod_worlds" for family in (await result(lab.metrics())).families)
     default = await result(lab.world())

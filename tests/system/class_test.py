@@ -263,7 +263,8 @@ class Managing(Case):
         for request in ({"update_class": c.UpdateClass(**{"class": "bio2"}, frozen=True)},
                         {"delete_class": c.DeleteClass(**{"class": "bio2"})},
                         {"add_members": c.AddMembers(**{"class": "bio2"}, names=["x"])},
-                        {"change_member": c.ChangeMember(**{"class": "bio2"}, number=1, removed=True)}):
+                        {"change_member": c.ChangeMember(**{"class": "bio2"}, number=1, removed=True)},
+                        {"for_each_world": c.ForEachWorld(**{"class": "bio2"}, pause=c.Pause())}):
             refused = other.call(c.CODE_NOT_FOUND, **request).status
             self.assertEqual((refused.reason, refused.violations[0].field),
                              (c.REASON_CLASS_NOT_FOUND, next(iter(request)) + ".class"))

@@ -60,7 +60,8 @@ F = descriptor_pb2.FieldDescriptorProto
 REGION = c.Region(left_px=0, top_px=0, width_px=100, height_px=100)
 NEEDED = {"subscribe_snapshots.view": c.SubscribeSnapshots(codec=plain.stream_pb2.CODEC_DELTA),
           "subscribe_snapshots.view.region": c.SubscribeSnapshots(view=c.View(region=REGION)),
-          "set_view.view.region": c.SetView(view=c.View(region=REGION))}
+          "set_view.view.region": c.SetView(view=c.View(region=REGION)),
+          "for_each_world.set_speed": c.ForEachWorld(set_speed=c.SetSpeed(speed=plain.w.Speed(max=True)))}
 WHOLE = [0, 1, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**63 - 1, 2**63, 2**64 - 1]  # the last is also -1
 REAL = [0.0, -0.0, float("nan"), float("inf"), -float("inf"), -1.0, 2.0**63]
 
@@ -217,7 +218,7 @@ class Walk(access.Access):
         if status.code == INVALID and "is not a" not in status.message:  # for messages that can be parsed
             named = [re.sub(r"\[\d+\]", "", violation.field) for violation in status.violations]  # x[2].y: x.y
             # the field is named as the parameter or gene that it sets; an item, organism or free gene may lack others
-            if re.search(r"\.(parameters|population|schedule|items|organisms|free_genes)\.", path):
+            if re.search(r"\.(parameters|population|schedule|items|organisms|free_genes|ranges)\.", path):
                 self.assertTrue([x for x in named if x.startswith(path.split(".")[0] + ".")], said)
             else:
                 self.assertTrue([x for x in named if path == x or path.startswith(x + ".")], said)
@@ -317,10 +318,13 @@ class Walk(access.Access):
 
     def test_the_fields_of_a_hello_and_of_acknowledgements(self):
         hello = self.pool.FindMessageTypeByName("evod.v1.Hello")
-        for field in hello.fields:
+        for way, field in scalars(hello):
             for value in values_of(field):
                 with plain.Client(self.server_, hello=False) as stranger:
-                    body = session_pb2.Hello(protocol_version=1).SerializeToString() + encoded(field, value)
+                    part = encoded(field, value)
+                    for step in reversed(way):
+                        part = delimited(step.number, part)
+                    body = session_pb2.Hello(protocol_version=1).SerializeToString() + part
                     stranger.send_body(delimited(1, body))
                     first = stranger.control()
                     if not first.HasField("welcome"):

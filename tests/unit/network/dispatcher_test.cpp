@@ -211,7 +211,9 @@ TEST_F(DispatcherTest, KeepsAPermanentRefusal) {
 
 TEST_F(DispatcherTest, RefusesACommandWithoutItsRole) {
     Client& client = connect(Role::Viewer);
-    ask(client, pause_of(7));
+    v1::Request creation = pause_of(7);
+    creation.mutable_create_world()->set_name("new");
+    ask(client, creation);
     EXPECT_TRUE(take_commands().empty());
     ASSERT_EQ(client.responses.size(), 1u);
     EXPECT_EQ(client.responses[0].status().code(), v1::CODE_PERMISSION_DENIED);

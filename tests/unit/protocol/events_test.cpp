@@ -30,8 +30,8 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
         EXPECT_EQ(event.run_id().size(), 32);
         if (event.has_parameters_changed()) {
             EXPECT_THAT(unset_in(event.parameters_changed()),
-                        testing::ElementsAre("changed.pending", "changed.value.choice", "changed.value.count",
-                                             "changed.value.flag"));
+                        testing::ElementsAre("changed.max", "changed.min", "changed.pending", "changed.value.choice",
+                                             "changed.value.count", "changed.value.flag"));
             EXPECT_EQ(event.parameters_changed().by().user(), "karl");
         }
         if (event.has_change_dropped()) {
@@ -62,9 +62,10 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
         }
     }
     const simulation::Applied applied{.world = "w", .tick = 3, .parameters = parameters::ParameterSet{}};
-    const simulation::Command commands[] = {simulation::CreateWorld{}, simulation::DeleteWorld{},
-                                            simulation::ResetWorld{}, simulation::Pause{},
-                                            simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}}};
+    const simulation::Command commands[] = {
+        simulation::CreateWorld{}, simulation::DeleteWorld{},
+        simulation::ResetWorld{},  simulation::Pause{},
+        simulation::AddNote{},     simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}}};
     for (const auto& command : commands) {
         const auto event = event_of(command, applied, base::client_actor({}, "a client", "::1:5000"), laboratory);
         ASSERT_TRUE(event);
@@ -79,8 +80,8 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
     cases.insert(event_of(simulation::Storage{}).kind_case());
     cases.insert(event_of(simulation::DamagedWorld{}).kind_case());
     EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, {}, laboratory)) << "a dry run";
-    // All but the two events that the network itself creates, and the two about fitness (ratings_test.cpp).
-    EXPECT_EQ(static_cast<int>(cases.size()) + 4, v1::Event::descriptor()->oneof_decl(0)->field_count());
+    // All but the three events that the network itself creates, and the two about fitness (ratings_test.cpp).
+    EXPECT_EQ(static_cast<int>(cases.size()) + 5, v1::Event::descriptor()->oneof_decl(0)->field_count());
 }
 
 TEST(EventMessage, EveryStateOfTheDiskIsConverted) {

@@ -17,15 +17,16 @@ namespace {
 TEST_F(Lived, AWorldIsConvertedCompletely) {
     entry().ticks_per_s = 60;
     entry().slowed = true;
-    // Unset: it awaits no fitness, its free genes have no list, it has not ended, is live, and is paced.
+    // Unset: it awaits no fitness, its free genes have no list, it has no owner, has not ended, is live, and is paced.
     EXPECT_THAT(unset_in(to_proto(entry())),
-                testing::ElementsAre("awaited_fitness", "free_genes", "outcome", "replay", "speed.max", "storage"));
+                testing::ElementsAre("awaited_fitness", "class", "free_genes", "frozen", "outcome", "owner", "replay",
+                                     "speed.max", "storage"));
     entry().storage = {.state = simulation::StorageState::Failing, .reason = "it is full"};
-    EXPECT_THAT(unset_in(to_proto(entry())),
-                testing::ElementsAre("awaited_fitness", "free_genes", "outcome", "replay", "speed.max"));
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("awaited_fitness", "class", "free_genes", "frozen",
+                                                                  "outcome", "owner", "replay", "speed.max"));
     entry().replay = {.replay_of = "v", .first_generation = 1, .last_generation = 2, .first_tick = 3, .last_tick = 4};
-    EXPECT_THAT(unset_in(to_proto(entry())),
-                testing::ElementsAre("awaited_fitness", "free_genes", "outcome", "speed.max"));
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("awaited_fitness", "class", "free_genes", "frozen",
+                                                                  "outcome", "owner", "speed.max"));
     EXPECT_EQ(to_proto(entry()).run_until_generation(), 101);
 }
 

@@ -36,17 +36,17 @@ class AClass : public testing::Test {
     base::Result<Applied> fork(const std::string& world, const std::string& name, const Ownership& ownership) {
         return laboratory.apply(ForkWorld{world, name, std::nullopt, RunId{2, ++runs}, ownership});
     }
-    base::Result<Applied> set(const std::string& world, std::uint32_t population_size,
+    base::Result<Applied> set(const std::string& world, std::uint32_t food_count,
                               std::optional<parameters::PlannedMoment> at = {}) {
         return laboratory.apply(SetParameters{.world = world,
-                                              .assignments = {{"population_size", population_size}},
+                                              .assignments = {{"food_count", food_count}},
                                               .dry_run = false,
                                               .expected_revision = {},
                                               .at = at});
     }
     Entry& entry(const std::string& name) { return **laboratory.find(name); }
 
-    ClassRules rules{.frozen = false, .ranges = {{"population_size", 2, 500}}, .worlds_per_member = 2};
+    ClassRules rules{.frozen = false, .ranges = {{"food_count", 2, 500}}, .worlds_per_member = 2};
     parameters::Parameters parameters;
     Laboratory laboratory;
     std::uint64_t runs = 0;
@@ -57,7 +57,7 @@ TEST_F(AClass, ItsRangesHoldForItsWorldsOnly) {
     const auto refused = set("bio_ann", 501);
     ASSERT_FALSE(refused);
     ASSERT_EQ(refused.error().violations.size(), 1u);
-    EXPECT_EQ(refused.error().violations[0].field, "set_parameters.population_size");
+    EXPECT_EQ(refused.error().violations[0].field, "set_parameters.food_count");
     EXPECT_EQ(refused.error().violations[0].allowed, "2 to 500 (class bio)");
     EXPECT_EQ(refused.error().violations[0].got, "501");
     EXPECT_TRUE(set("alone", 501));
