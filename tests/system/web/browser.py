@@ -198,6 +198,8 @@ class Browser:
     def panel(self, title):
         """Opens a panel by its tab."""
         self.click(self.value(f"{TABS}.find((tab) => tab.textContent === arguments[0])", title))
+        shown = "[...document.querySelectorAll('[data-panel]')].filter((panel) => panel.offsetParent !== null)"
+        self.wait(f"{shown}.length === 0 || {shown}.some((panel) => panel.innerText !== '')", f"{title} is loaded")
 
     def type_into(self, element, text):
         """Replaces the text of a field, and leaves the field by Enter."""

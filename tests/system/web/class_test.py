@@ -209,7 +209,8 @@ class Class(Case):
         self.teacher.driver.switch_to.active_element.send_keys("f")
         self.teacher.wait_for_text("❄ frozen", ".wall-bar")
         self.teacher.wait(
-            "[...document.querySelectorAll('.class-wall [aria-live]')].some(e => e.textContent.includes('class is frozen'))",
+            "[...document.querySelectorAll('.class-wall [aria-live]')]"
+            ".some((element) => element.textContent.includes('class is frozen'))",
             "the live region")
         self.teacher.driver.switch_to.active_element.send_keys(Keys.ESCAPE)
         self.teacher.wait("!document.querySelector('.class-wall')", "the page of the worlds")

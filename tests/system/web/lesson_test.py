@@ -235,7 +235,7 @@ class Lessons(PlayedCase):
         self.assertAlmostEqual(answers["picks"]["apart"], answers["picks"]["predicted"] - observed["picks_of_fittest"])
         self.assertAlmostEqual(answers["takeover"]["law"], 4.15, places=2)
         self.assertEqual(answers["most_diverse"]["passed"], True)
-        self.assertEqual(self.value_of(self.control, "selection"), "random")
+        self.assertEqual(self.value_of(self.control, "tournament_size"), 1)
 
     def test_a_run_goes_on_after_a_reload(self):
         browser = self.browser

@@ -86,8 +86,8 @@ TEST(Requests, RefuseNanAndInfinityInEveryNumber) {
             poison_doubles(request, part, poison, poisoned);
         }
     }
-    // Three lists of parameters, a schedule, two speeds, a rate, two regions, two positions, a fitness; four numbers of a
-    // gene in each of three lists.
+    // Three lists of parameters, a schedule, two speeds, a rate, two regions, two positions, a fitness; four numbers of
+    // a gene in each of three lists.
     EXPECT_EQ(poisoned, 3 * 32);
 }
 
