@@ -2,12 +2,15 @@
 
 #include "evod/v1/session.pb.h"
 #include "proto/codec/framing.h"
+#include "proto/text/number_text.h"
 #include "server/protocol/entities.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
 
+#include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace evod::protocol {
@@ -30,6 +33,25 @@ std::optional<parameters::RequestedParameters> requested_by(const std::string& r
         return requested ? std::optional{*requested} : std::nullopt;
     }
     return std::nullopt;
+}
+
+/// Above this number of organisms, a tick takes so long that answers can take more than 0.1 s on a machine of two cores,
+/// because nothing interrupts a tick (tests/bench/class_cost.py).
+constexpr std::uint64_t organisms_undisturbing_max = 500'000;
+
+/// Says that a world that begins will slow the worlds of classes; nullopt: it will not.
+std::optional<std::string> disturbance_by(const simulation::Entry& world, const simulation::Laboratory& laboratory) {
+    const parameters::Parameters& requested = world.world.parameters().requested.values;
+    const std::uint64_t organisms = std::uint64_t{requested.island_count} * requested.population_size;
+    const auto others = std::ranges::count_if(laboratory.entries(), [&](const auto& other) {
+        return !other->ownership.class_name.empty() && other->ownership.class_name != world.ownership.class_name;
+    });
+    if (organisms <= organisms_undisturbing_max || others == 0) {
+        return std::nullopt;
+    }
+    return "a tick of " + text::with_separators(organisms) +
+           " organisms cannot be interrupted: while this world runs, answers to the " + std::to_string(others) +
+           " worlds of classes on this server can take more than 0.1 s, and they may fall behind real time";
 }
 
 } // namespace
@@ -56,6 +78,12 @@ v1::Response answer_of(std::uint64_t request_id, const std::string& request_name
     }
     if (const auto requested = requested_by(request_name, laboratory, *applied)) {
         add_warnings(response, *requested);
+    }
+    const auto entry = laboratory.find(applied->world);
+    if (entry && (request_name == "create_world" || request_name == "reset_world" || request_name == "run")) {
+        if (auto disturbance = disturbance_by(**entry, laboratory)) {
+            response.add_warnings(*std::move(disturbance));
+        }
     }
     return response;
 }

@@ -156,6 +156,7 @@ class Browser:
     # ---- what a user does ----
 
     def element(self, css):
+        self.wait("document.querySelector(arguments[0]) !== null", f"an element {css}", css)
         return self.driver.find_element(By.CSS_SELECTOR, css)
 
     def button(self, label, within="body"):
@@ -198,8 +199,6 @@ class Browser:
     def panel(self, title):
         """Opens a panel by its tab."""
         self.click(self.value(f"{TABS}.find((tab) => tab.textContent === arguments[0])", title))
-        shown = "[...document.querySelectorAll('[data-panel]')].filter((panel) => panel.offsetParent !== null)"
-        self.wait(f"{shown}.length === 0 || {shown}.some((panel) => panel.innerText !== '')", f"{title} is loaded")
 
     def type_into(self, element, text):
         """Replaces the text of a field, and leaves the field by Enter."""

@@ -35,6 +35,25 @@ TEST_F(Answers, ShowTheParametersAfterAChange) {
     EXPECT_EQ(response.applied_tick(), 0);
 }
 
+TEST_F(Answers, WarnAboutAWorldThatSlowsThoseOfClasses) {
+    using parameters::ParameterValue;
+    ASSERT_TRUE(laboratory.apply(simulation::SetParameters{
+        "w",
+        {{"population_size", ParameterValue{1'000'000u}}, {"scale_with_population", ParameterValue{true}}},
+        false,
+        {}}));
+    const simulation::Command run = simulation::Run{"w", {}};
+    EXPECT_EQ(answer_to(run, "run").warnings_size(), 0) << "there is no class";
+    simulation::CreateWorld of_member{"bio_ann", {}, {}, {}};
+    of_member.ownership = {.user = "bio/ann", .class_name = "bio", .teacher = "kant"};
+    ASSERT_TRUE(laboratory.apply(of_member));
+    const v1::Response warned = answer_to(run, "run");
+    ASSERT_EQ(warned.warnings_size(), 1);
+    EXPECT_TRUE(warned.warnings(0).starts_with("a tick of 1,000,000 organisms cannot be interrupted"));
+    EXPECT_EQ(answer_to(simulation::Pause{"w"}, "pause").warnings_size(), 0);
+    EXPECT_EQ(answer_to(simulation::Run{"bio_ann", {}}, "run").warnings_size(), 0);
+}
+
 TEST_F(Answers, WarnAboutSettingsWithoutEvolution) {
     using parameters::ParameterValue;
     const auto warnings_of = [&](const simulation::Command& command, const std::string& name) {
