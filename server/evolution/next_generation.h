@@ -40,6 +40,10 @@ struct NextGeneration {
     // The change from the previous generation, as it was before migration. Set by the caller; nullopt in the first
     // generation, or if the previous generation is not available.
     std::optional<SelectionAccount> account = std::nullopt;
+    // The same for a second species, whose organisms come last. elite_count and survivor_count are then those of the
+    // first species.
+    std::uint32_t predator_count = 0;
+    std::optional<SelectionAccount> predator_account = std::nullopt;
 };
 
 /// How the places of the next generation are divided.

@@ -22,11 +22,15 @@ namespace evod::parameters {
 using evolution::FitnessFunction;
 enum class FleeRule { Nearer, Always };
 enum class IntegratorChoice { SymplecticEuler, ExplicitEuler, BackwardEuler };
+enum class Reproduction { Generations, Births };
+enum class Births { Sexual, Asexual };
 
 } // namespace evod::parameters
 
 EVOD_CHOICE_NAMES(evod::parameters::FleeRule, "nearer", "always")
 EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "explicit_euler", "backward_euler")
+EVOD_CHOICE_NAMES(evod::parameters::Reproduction, "generations", "births")
+EVOD_CHOICE_NAMES(evod::parameters::Births, "sexual", "asexual")
 
 // clang-format off
 #define EVOD_MODEL_PARAMETERS(TOPIC, REAL, COUNT, FLAG, CHOICE)                                                        \
@@ -80,7 +84,38 @@ EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "expli
     REAL(base_health_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene base_health, as for normal_speed_cost: base_health_cost · (base_health/100 − 1).")      \
     REAL(food_radius_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene food_radius, as for normal_speed_cost: food_radius_cost · ((food_radius/100)² − 1).")   \
     REAL(poison_radius_cost, 0, 0, 10, "", NextGeneration, "Cost of the gene poison_radius, as for normal_speed_cost: poison_radius_cost · ((poison_radius/100)² − 1).") \
-    REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "Upper limit of health after a meal, per unit of the gene body_size; 0 means no limit.")
+    REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "Upper limit of health after a meal, per unit of the gene body_size; 0 means no limit.") \
+    REAL(body_size_cost, 0, -1, 10, "", NextGeneration, "Cost of the gene body_size, as for normal_speed_cost: body_size_cost · (body_size/100 − 1).") \
+    TOPIC("Births")                                                                                                    \
+    CHOICE(reproduction, Reproduction, Generations, Reset, "How organisms multiply: generations, the genetic algorithm breeds each next generation; births, organisms with enough health have children while they live, and a generation is an interval of statistics, after which the living live on.") \
+    CHOICE(births, Births, Sexual, NextGeneration, "Parents of a child, with births: sexual, two organisms near each other; asexual, one.") \
+    REAL(birth_health, 120, 0, 10'000, "health", NextTick, "Health from which an organism may have a child.")          \
+    REAL(birth_cost, 20, 0, 10'000, "health", NextTick, "Health that a birth costs each parent, in addition to its share of the child's health.") \
+    REAL(mate_px, 100, 0, 10'000, "px", NextTick, "Greatest distance of the two parents of a child, centre to centre.") \
+    REAL(birth_every_s, 0.25, 0.001, 60, "s", NextGeneration, "Time from one search for parents to the next.")         \
+    REAL(lifespan_s, 0, 0, 86'400, "s", NextGeneration, "Age at which an organism dies, with births; 0 means that no age is lethal.") \
+    COUNT(population_max, 10'000, 1, 4'000'000, "organisms", NextGeneration, "Living organisms of a species on an island from which there are no further births.") \
+    FLAG(shuffle_births, false, NextTick, "Whether the genes of children come from parents that are drawn among the latest births, dead or alive: a control for experiments, in which births are as frequent as before but favour no gene.") \
+    TOPIC("Predators")                                                                                                 \
+    COUNT(predator_count, 0, 0, 4'000'000, "organisms", Reset, "Predators on each island: in every generation, or with births at their arrival. They eat the other organisms, the prey, and no food or poison. 0 means that there is no second species.") \
+    COUNT(predator_from, 1, 1, 1'000'000, "generation", Reset, "Generation or interval at whose beginning predators arrive.") \
+    REAL(prey_health, 60, 0, 10'000, "health", NextTick, "Health that a predator gains from a prey.")                  \
+    REAL(handling_s, 6, 0, 3'600, "s", NextTick, "Time after a meal in which a predator wanders and neither sees nor eats prey.") \
+    REAL(predator_health_loss_per_s, 6, 0, 10'000, "health/s", NextGeneration, "health_loss_per_s of predators; in an experiment file, the default is the file's health_loss_per_s.") \
+    REAL(predator_initial_gene_min, 80, 0, 10'000, "gene units", Reset, "initial_gene_min of predators; in an experiment file, the default is the file's initial_gene_min.") \
+    REAL(predator_initial_gene_max, 120, 0, 10'000, "gene units", Reset, "initial_gene_max of predators; in an experiment file, the default is the file's initial_gene_max.") \
+    CHOICE(predator_selection, evolution::SelectionMethod, Roulette, NextTick, "selection of predators; in an experiment file, the default is the file's selection.") \
+    REAL(predator_survivors, 0.5, 0, 1, "share", NextTick, "survivors of predators; in an experiment file, the default is the file's survivors.") \
+    COUNT(predator_elite_count, 0, 0, 4'000'000, "organisms", NextTick, "elite_count of predators; in an experiment file, the default is the file's elite_count.") \
+    CHOICE(predator_crossover, evolution::CrossoverMethod, Uniform, NextTick, "crossover of predators; in an experiment file, the default is the file's crossover.") \
+    REAL(predator_mutation_chance, 0.15, 0, 1, "chance", NextTick, "mutation_chance of predators; in an experiment file, the default is the file's mutation_chance.") \
+    REAL(predator_mutation_step, 15, 0, 1000, "gene units", NextTick, "mutation_step of predators; in an experiment file, the default is the file's mutation_step.") \
+    CHOICE(predator_births, Births, Sexual, NextGeneration, "births of predators; in an experiment file, the default is the file's births.") \
+    REAL(predator_birth_health, 120, 0, 10'000, "health", NextTick, "birth_health of predators; in an experiment file, the default is the file's birth_health.") \
+    REAL(predator_birth_cost, 20, 0, 10'000, "health", NextTick, "birth_cost of predators; in an experiment file, the default is the file's birth_cost.") \
+    REAL(predator_mate_px, 100, 0, 10'000, "px", NextTick, "mate_px of predators; in an experiment file, the default is the file's mate_px.") \
+    REAL(predator_lifespan_s, 0, 0, 86'400, "s", NextGeneration, "lifespan_s of predators; in an experiment file, the default is the file's lifespan_s.") \
+    COUNT(predator_population_max, 10'000, 1, 4'000'000, "organisms", NextGeneration, "population_max of predators; in an experiment file, the default is the file's population_max.")
 // clang-format on
 
 namespace evod::parameters {
@@ -89,6 +124,15 @@ namespace evod::parameters {
 struct Parameters : evolution::Parameters {
     EVOD_MODEL_PARAMETERS(EVOD_NO_FIELD, EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
 };
+
+/// The parameters of the species of predators: `parameters`, with the values of predator_… in the place of the prey's.
+/// Whatever computes something of a species takes the parameters of that species.
+Parameters of_predators(Parameters parameters);
+
+/// Whether organisms multiply by births; otherwise generations are bred.
+inline bool has_births(const Parameters& parameters) {
+    return parameters.reproduction == Reproduction::Births;
+}
 
 /// A parameter value in files, options and messages. A choice is represented by its name.
 using ParameterValue = std::variant<double, std::uint32_t, bool, std::string>;

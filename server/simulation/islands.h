@@ -12,6 +12,7 @@
 #include "server/evolution/migration.h"
 #include "server/evolution/next_generation.h"
 #include "server/parameters/model_parameters.h"
+#include "server/simulation/colony.h"
 #include "server/simulation/commands.h"
 #include "server/simulation/island.h"
 #include "server/simulation/statistics.h"
@@ -34,6 +35,14 @@ constexpr std::uint32_t no_founder = ~0U;
 struct BredIslands {
     std::vector<evolution::NextGeneration> islands; // one per island
     Founders founders;
+    std::vector<IslandOpening> openings = {}; // with births, from the second interval on: one per island
+};
+
+/// The birth of a child, or, without parents, the arrival of an organism that was placed.
+struct Birth {
+    std::uint32_t tick;         // of the interval, after which it was born
+    evolution::Parents parents; // ids in the same interval
+    friend bool operator==(const Birth&, const Birth&) = default;
 };
 
 /// The outcome of a generation on one island. Every vector is indexed by organism id.
@@ -45,6 +54,7 @@ struct IslandOutcome {
     std::vector<double> objectives = {};
     // The chromosomes that clients have repaired, one of each organism after another; empty: none was repaired.
     std::vector<float> repaired = {};
+    std::vector<Birth> births = {}; // with births: of the organisms with the last ids
     friend bool operator==(const IslandOutcome&, const IslandOutcome&) = default;
 
     /// The fitness that decides migration, survival and breeding: with several objectives the standing

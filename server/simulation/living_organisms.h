@@ -13,7 +13,8 @@
 
 namespace evod::simulation {
 
-enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned, Removed };
+enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned, Removed, Eaten, Old };
+enum class Species : std::uint8_t { Prey, Predator };
 
 /// A heading is at most this far from 0, radians: π, and the error of a tick. The tick adds a turn of up to 629 rad
 /// (the maxima of turn_rate_max_deg_s and tick_s), and then subtracts full turns. Rounding the sum to float, the
@@ -31,6 +32,8 @@ struct LivingOrganisms {
     base::Column<float> heading;     // radians, −π … π
     base::Column<float> base_health; // gene units
     base::Column<float> weights;     // in the order of BrainColumns::weights
+    // Only in colonies; otherwise empty. The ticks of the generation are those at whose end it happens.
+    base::Column<std::uint32_t> hunts_from; // a predator hunts again from this tick on; 0 if it does not handle a meal
 
     /// Removes all organisms. weight_count  the number of weights of each network; 0: the organisms have none.
     void clear(std::uint32_t weight_count = 0);
@@ -75,7 +78,8 @@ base::StateHash hash_of_organism(const physics::Circles& bodies, const LivingOrg
 struct LifeRecords {
     std::vector<std::uint32_t> lived_ticks; // ticks until death; 0 for living organisms
     std::vector<CauseOfDeath> cause;
-    std::vector<std::uint32_t> food_eaten, poison_eaten;
+    std::vector<std::uint32_t> food_eaten, poison_eaten; // a predator's food is prey
+    std::vector<std::uint32_t> children;                 // in its whole life; only in colonies (colony.h)
 
     void begin_generation(std::size_t organisms);
     /// Adds a living organism.

@@ -28,6 +28,19 @@ struct GeneStatistics {
     double mean = 0, deviation = 0, min = 0, max = 0; // standard deviation of the population: divided by n
 };
 
+/// What only colonies have (colony.h), of one species.
+struct ColonyStatistics {
+    std::uint32_t first_count = 0; // organisms at the beginning of the generation
+    std::uint32_t lowest_count = 0; // fewest living organisms after any tick
+    double count_mean = 0;          // living organisms, mean over the ticks
+    std::uint32_t born_count = 0, refused_count = 0, without_room_count = 0; // as in ColonyCounts
+    std::uint32_t eaten_count = 0, old_count = 0;
+    std::uint32_t died_count = 0; // deaths, of whatever cause
+    // Of the organisms that died: children, and age at death.
+    double children_mean = 0, children_variance = 0, age_mean_s = 0;
+    friend bool operator==(const ColonyStatistics&, const ColonyStatistics&) = default;
+};
+
 struct GenerationStatistics {
     std::uint64_t generation = 1; // 1 for the first
     std::uint32_t island = 0;
@@ -48,6 +61,10 @@ struct GenerationStatistics {
     // previous generation is not available. The account is known from the generation's beginning on, so a checkpoint
     // does not contain it.
     std::optional<evolution::SelectionAccount> account = std::nullopt;
+    // In colonies, and of both species.
+    std::optional<ColonyStatistics> colony = std::nullopt;
+    // The predators, without `predators` of their own; empty if there are none. The other members are about the prey.
+    std::vector<GenerationStatistics> predators = {};
 };
 
 /// The statistics of an ended generation, one entry per island. They are immutable, and copies share them.
@@ -110,6 +127,23 @@ void for_each_number(Statistics&& s, Visit&& visit) {
     visit("best_organism", s.best_organism);
 }
 
+/// Calls visit(name, value) for every number of a ColonyStatistics, in the order of the columns in files.
+template <class Statistics, class Visit>
+void for_each_colony_number(Statistics&& s, Visit&& visit) {
+    visit("first_count", s.first_count);
+    visit("lowest_count", s.lowest_count);
+    visit("count_mean", s.count_mean);
+    visit("born_count", s.born_count);
+    visit("refused_count", s.refused_count);
+    visit("without_room_count", s.without_room_count);
+    visit("eaten_count", s.eaten_count);
+    visit("old_count", s.old_count);
+    visit("died_count", s.died_count);
+    visit("children_mean", s.children_mean);
+    visit("children_variance", s.children_variance);
+    visit("age_mean_s", s.age_mean_s);
+}
+
 /// Calls visit(name, value) for every number of the first genes of s.genes.
 ///
 /// gene_names  the names of these genes, in chromosome order.
@@ -136,6 +170,7 @@ struct LiveStatistics {
     double health_mean = 0;                            // mean health of living organisms; 0 if there are none
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint32_t starved_count = 0, poisoned_count = 0;
+    std::uint32_t eaten_count = 0, old_count = 0, born_count = 0; // only in colonies
 };
 
 /// Computes LiveStatistics::health_mean.

@@ -39,6 +39,17 @@ struct IslandCounts {
     friend bool operator==(const IslandCounts&, const IslandCounts&) = default;
 };
 
+/// What has happened in a colony (colony.h) on the island in this generation so far, per species.
+struct ColonyCounts {
+    std::uint32_t born = 0;            // children
+    std::uint32_t refused = 0;         // births that did not happen, because population_max was reached
+    std::uint32_t without_room = 0;    // births that did not happen, because no place was free
+    std::uint32_t starved = 0, poisoned = 0, eaten = 0, old = 0; // deaths
+    std::uint32_t meals = 0;           // food items or prey eaten
+
+    friend bool operator==(const ColonyCounts&, const ColonyCounts&) = default;
+};
+
 /// The number of entities of each kind on an island at the beginning of a generation. It determines the shape of the
 /// island's state, together with the numbers of placed entities.
 struct IslandShape {
@@ -46,6 +57,7 @@ struct IslandShape {
     std::uint32_t organisms = 0;                      // number of organisms that were born
     bool has_bodies = true;                           // if false, the other parts are empty
     bool has_headings = false;                        // whether the controller is network
+    bool is_colony = false;                           // whether the state has the parts of colonies
     std::uint32_t crates = 0, food = 0, poison = 0;
 
     friend bool operator==(const IslandShape&, const IslandShape&) = default;
@@ -63,10 +75,11 @@ struct IslandState {
         float velocity_x = 0, velocity_y = 0; // px/s
         friend bool operator==(const Crate&, const Crate&) = default;
     };
-    /// An organism that was placed in this generation.
+    /// An organism that was placed or born in this generation.
     struct Placed {
         std::vector<float> genes;
-        std::uint32_t tick; // it was placed after this tick of the generation
+        std::uint32_t tick; // it was placed or born after this tick of the generation
+        evolution::Parents parents = {~0U, ~0U}; // of a child, the ids of its parents in this generation
         friend bool operator==(const Placed&, const Placed&) = default;
     };
     LifeRecords life_records; // of the organisms that were born, then of those that were placed
@@ -77,6 +90,10 @@ struct IslandState {
     base::Column<float> headings;                     // radians, by id; 0 for dead organisms; empty without networks
     std::vector<Crate> crates;
     base::Column<Items::Item> food, poison;
+    // The rest only in colonies.
+    std::array<ColonyCounts, 2> colony{};          // per species
+    std::vector<std::uint32_t> handling;           // by id: ticks until a predator hunts again
+    std::array<std::vector<float>, 2> latest_born; // per species, with shuffle_births: the chromosomes of latest births
 
     friend bool operator==(const IslandState&, const IslandState&) = default;
 };

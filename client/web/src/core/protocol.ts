@@ -56,11 +56,17 @@ export type StorageState = "STORAGE_STATE_UNSPECIFIED"|"STORAGE_STATE_KEEPS_UP"|
  *  GENE_GROUP_FREE: the simulation does not read it (parameter free_genes) */
 export type GeneGroup = "GENE_GROUP_UNSPECIFIED"|"GENE_GROUP_BODY"|"GENE_GROUP_BRAIN"|"GENE_GROUP_FREE";
 
+/** The species of an organism.
+ *  SPECIES_UNSPECIFIED: prey; in a world without predators, every organism */
+export type Species = "SPECIES_UNSPECIFIED"|"SPECIES_PREDATOR";
+
 /** Why an organism died.
  *  CAUSE_OF_DEATH_UNSPECIFIED: the organism is alive
- *  CAUSE_OF_DEATH_REMOVED: a Remove removed it */
+ *  CAUSE_OF_DEATH_REMOVED: a Remove removed it
+ *  CAUSE_OF_DEATH_EATEN: a predator ate it
+ *  CAUSE_OF_DEATH_OLD: it reached the age lifespan_s */
 export type CauseOfDeath = "CAUSE_OF_DEATH_UNSPECIFIED"|"CAUSE_OF_DEATH_STARVED"|"CAUSE_OF_DEATH_POISONED"|
-  "CAUSE_OF_DEATH_REMOVED";
+  "CAUSE_OF_DEATH_REMOVED"|"CAUSE_OF_DEATH_EATEN"|"CAUSE_OF_DEATH_OLD";
 
 /** The action of an organism in the next tick, computed from the current items. If food or poison reappears at the start
  *  of that tick, the action may differ.
@@ -420,6 +426,35 @@ export interface GenerationStatistics {
   best_organism?: number;
   /** duration of the generation in simulated time */
   simulated_s?: number;
+  /** only in colonies: worlds with births or with predators */
+  colony?: ColonyStatistics;
+  /** The predators; the other fields are about the prey. Absent if there are none. */
+  predators?: GenerationStatistics;
+}
+
+/** What only colonies have, of one species in one generation. With births, a generation is an interval. */
+export interface ColonyStatistics {
+  /** organisms at its beginning */
+  first_count?: number;
+  /** fewest living organisms after any tick */
+  lowest_count?: number;
+  /** living organisms, mean over the ticks */
+  count_mean?: number;
+  /** children */
+  born_count?: number;
+  /** births that did not happen, because population_max was reached */
+  refused_count?: number;
+  /** births that did not happen, because no place was free */
+  without_room_count?: number;
+  eaten_count?: number;
+  /** deaths at the age lifespan_s */
+  old_count?: number;
+  /** deaths, of whatever cause */
+  died_count?: number;
+  /** Of the organisms that died: children in the whole life, and age at death. */
+  children_mean?: number;
+  children_variance?: number;
+  age_mean_s?: number;
 }
 
 /** The state of an island in the current generation. */
@@ -435,6 +470,12 @@ export interface LiveStatistics {
   poison_eaten?: number;
   starved_count?: number;
   poisoned_count?: number;
+  /** Only in colonies. The other counts are about both species. */
+  eaten_count?: number;
+  old_count?: number;
+  born_count?: number;
+  /** living predators */
+  predator_count?: number;
 }
 
 /** The current state of one organism. */
@@ -459,7 +500,8 @@ export interface OrganismInfo {
   food_eaten?: number;
   poison_eaten?: number;
   /** Ids of the parents in the previous generation, on this island; empty in the first generation and if the organism
-   *  was placed. */
+   *  was placed. With births: of a child, the ids of its parents in this interval; of others, their own id in the
+   *  previous interval. */
   parents?: number[];
   /** the action in the next tick */
   choice?: Choice;
@@ -476,6 +518,16 @@ export interface OrganismInfo {
   /** The neural network that steers the organism. Absent if the organism is dead, its generation has ended, or the
    *  controller of the world is not `network`. */
   brain?: Brain;
+  /** Only in colonies: */
+  species?: Species;
+  /** with births: one number in its whole life; ids change at every interval */
+  number?: number;
+  /** with births; lived_s counts from the beginning of the interval */
+  age_s?: number;
+  /** with births */
+  children?: number;
+  /** of a predator: time until it hunts again */
+  handling_s?: number;
 }
 
 /** A neural network of one hidden layer, at the start of the next tick. Its weights are the genes of the group `brain`:
@@ -565,12 +617,12 @@ export interface SnapshotFrame {
    *                               displacements
    *    organisms · food · poison · crates · obstacles, a section each:
    *      parts u8                 bit 0: some entities of the base are gone; bit 1: some entities have come; bit 2:
-   *            the section has headings (docs/PROTOCOL.md, Deltas, states when)
+   *            the section has headings; bit 3: it has species (docs/PROTOCOL.md, Deltas, states when)
    *      gone: count u32 · indices in the base, rising column
    *      come: count u32 · ids, rising column (organisms, food, poison) · x · y (position_bytes each) · radius u16 ·
    *            health u16, or half width u16 · half height u16, each in planes: the lowest byte of every number, then
-   *            the next byte of every number, … · heading u8 (if the section has headings) · displacements x · y,
-   *            columns (organisms, crates)
+   *            the next byte of every number, … · heading u8 (if the section has headings) · species u8 (if it has species) ·
+   *            displacements x · y, columns (organisms, crates)
    *      stayed, if any entity did: x · y, columns of residuals (organisms, crates) · health, column of differences
    *            (organisms) · heading, column of differences modulo 256 (if the section has headings)
    *  column: width u8 (0, 1, 2 or 4; plus 128 if there are exceptions) · exceptions: count u32 · indices u32 ·
@@ -629,6 +681,8 @@ export interface PlainOrganisms {
   /** Radians from +x toward +y, a multiple of 1/256 of a full turn, -pi to pi. Empty unless SubscribeSnapshots.headings
    *  asked for headings and the organisms have them, that is, the controller of the world is `network`. */
   heading?: number[];
+  /** A Species. Empty unless SubscribeSnapshots.species asked for it and the world has predators. */
+  species?: number[];
 }
 
 /** The food or poison that is present, ordered by id. Each item is a circle with the radius item_radius_px. */
@@ -1001,9 +1055,10 @@ export type MutationKind = "MUTATION_KIND_UNSPECIFIED"|"MUTATION_KIND_CREEP"|"MU
  *  RUN_TABLE_POPULATION: the genes of one generation; another world can use them as its first population
  *  RUN_TABLE_EVENTS: the journal: all commands that were applied
  *  RUN_TABLE_NOTES: the notes of AddNote
+ *  RUN_TABLE_BIRTHS: with births: when each organism was born and died, its parents and its children
  *  RUN_TABLE_FILE: the run file itself: a consistent copy; `format` must not be set */
 export type RunTable = "RUN_TABLE_UNSPECIFIED"|"RUN_TABLE_GENERATIONS"|"RUN_TABLE_ORGANISMS"|"RUN_TABLE_LINEAGE"|
-  "RUN_TABLE_POPULATION"|"RUN_TABLE_EVENTS"|"RUN_TABLE_NOTES"|"RUN_TABLE_FILE";
+  "RUN_TABLE_POPULATION"|"RUN_TABLE_EVENTS"|"RUN_TABLE_NOTES"|"RUN_TABLE_BIRTHS"|"RUN_TABLE_FILE";
 
 /** TEXT_FORMAT_CSV: with a header line
  *  TEXT_FORMAT_JSON_LINES: one object per line */
@@ -1864,6 +1919,8 @@ export interface SubscribeSnapshots {
   view?: View;
   /** snapshots contain the headings of organisms, if these have headings */
   headings?: boolean;
+  /** snapshots contain the species of organisms, if the world has predators */
+  species?: boolean;
 }
 
 /** The region of an island that a viewer shows, and the level of detail. The default is the whole island at DETAIL_FULL. */
@@ -2327,6 +2384,7 @@ export interface Messages {
   "evod.v1.GeneAccount": GeneAccount;
   "evod.v1.GeneStatistics": GeneStatistics;
   "evod.v1.GenerationStatistics": GenerationStatistics;
+  "evod.v1.ColonyStatistics": ColonyStatistics;
   "evod.v1.LiveStatistics": LiveStatistics;
   "evod.v1.OrganismInfo": OrganismInfo;
   "evod.v1.Brain": Brain;
