@@ -331,6 +331,26 @@ bool has_bodies(const Parameters& parameters) {
            (parameters.fitness == FitnessFunction::External && parameters.external_bodies);
 }
 
+Parameters of_predators(Parameters p) {
+    p.population_size = p.predator_count;
+    p.health_loss_per_s = p.predator_health_loss_per_s;
+    p.initial_gene_min = p.predator_initial_gene_min;
+    p.initial_gene_max = p.predator_initial_gene_max;
+    p.selection = p.predator_selection;
+    p.survivors = p.predator_survivors;
+    p.elite_count = p.predator_elite_count;
+    p.crossover = p.predator_crossover;
+    p.mutation_chance = p.predator_mutation_chance;
+    p.mutation_step = p.predator_mutation_step;
+    p.births = p.predator_births;
+    p.birth_health = p.predator_birth_health;
+    p.birth_cost = p.predator_birth_cost;
+    p.mate_px = p.predator_mate_px;
+    p.lifespan_s = p.predator_lifespan_s;
+    p.population_max = p.predator_population_max;
+    return p;
+}
+
 namespace {
 
 /// The genes of all organisms together: 4 million organisms with a network of 25 weights, or 1.9 million with 58.
