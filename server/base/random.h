@@ -41,6 +41,8 @@ enum class Purpose : std::uint32_t {
     Heading = 22,        // headings of organisms with a network at the beginning of a generation
     FirstFreeGenes = 23, // the Latin hypercube of the first generation, keyed by gene
     ClassMember = 24,    // seeds of the worlds of a class, keyed by the number of the member
+    BirthPlacement = 25, // places of children around their parents, keyed by the first parent
+    BirthParents = 26,   // parents of the genes of a child, with shuffle_births
     ScenarioTest = 1000, // tests and demonstrations
 };
 

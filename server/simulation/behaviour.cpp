@@ -54,6 +54,7 @@ struct FewOrganisms {
     std::array<std::int32_t, room> x{}, y{};
     std::array<float, room> velocity_x{}, velocity_y{}, health{}, normal_speed{}, impulse{};
     std::array<std::uint32_t, room> id{};
+    std::array<std::int32_t, room> is_hunted{};
     View food, poison;
 
     void put(std::size_t k, const physics::Circles& bodies, const LivingOrganisms& living, std::uint32_t body) {
@@ -80,7 +81,8 @@ struct FewOrganisms {
                 .normal_speed = normal_speed.data(),
                 .impulse = impulse.data(),
                 .food = food.columns(),
-                .poison = poison.columns()};
+                .poison = poison.columns(),
+                .is_hunted = is_hunted.data()};
     }
 };
 
@@ -168,7 +170,8 @@ class FewBrains {
 /// Copies organisms in groups, with what they see, and calls predict(few, first, count) for each group.
 template <class Predict>
 void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
-                  const Items& poison, std::span<const std::uint32_t> bodies_asked, Predict&& predict) {
+                  const Items& poison, const Hunt* hunt, std::uint32_t tick,
+                  std::span<const std::uint32_t> bodies_asked, Predict&& predict) {
     for (std::size_t begin = 0; begin < bodies_asked.size(); begin += FewOrganisms::room) {
         const std::size_t count = std::min(bodies_asked.size() - begin, FewOrganisms::room);
         for (std::size_t k = 0; k < count; ++k) {
@@ -178,6 +181,15 @@ void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const Livin
         }
         few.food.search(food, count);
         few.poison.search(poison, count);
+        for (std::size_t k = 0; hunt != nullptr && k < count; ++k) {
+            Sight sight{few.food.x[k], few.food.y[k], few.poison.x[k], few.poison.y[k], 0};
+            hunt->look(bodies, living, bodies_asked[begin + k], tick, sight);
+            few.food.x[k] = sight.food_x;
+            few.food.y[k] = sight.food_y;
+            few.poison.x[k] = sight.threat_x;
+            few.poison.y[k] = sight.threat_y;
+            few.is_hunted[k] = sight.is_hunted;
+        }
         predict(begin, count);
     }
 }
@@ -185,60 +197,65 @@ void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const Livin
 } // namespace
 
 void predict_intentions(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
-                        const Items& poison, const BehaviourRules& rules, const base::RandomKey& key,
+                        const Items& poison, const Hunt* hunt, const BehaviourRules& rules, const base::RandomKey& key,
                         std::uint32_t tick, std::span<const std::uint32_t> bodies_asked,
                         std::span<Intention> intentions) {
     EVOD_ASSERT(bodies_asked.size() == intentions.size());
     FewOrganisms few;
     ChosenForces forces;
     std::array<std::int32_t, FewOrganisms::room> choices;
-    for_each_few(few, bodies, living, food, poison, bodies_asked, [&](std::size_t begin, std::size_t count) {
-        organism_kernels().predict(few.columns(), 0, count, choice_rules(rules, key, tick), forces.x.data(),
-                                   forces.y.data(), choices.data());
-        for (std::size_t k = 0; k < count; ++k) {
-            const auto choice = static_cast<Choice>(choices[k]);
-            const auto [x, y] = choice == Choice::Flee   ? Place{few.poison.x[k], few.poison.y[k]}
-                                : choice == Choice::Seek ? Place{few.food.x[k], few.food.y[k]}
-                                                         : Place{few.x[k], few.y[k]};
-            intentions[begin + k] = {choice, forces.x[k], forces.y[k], x, y};
-        }
-    });
+    for_each_few(few, bodies, living, food, poison, hunt, tick, bodies_asked,
+                 [&](std::size_t begin, std::size_t count) {
+                     organism_kernels().predict(few.columns(), 0, count, choice_rules(rules, key, tick),
+                                                forces.x.data(), forces.y.data(), choices.data());
+                     for (std::size_t k = 0; k < count; ++k) {
+                         const auto choice = static_cast<Choice>(choices[k]);
+                         const auto [x, y] = choice == Choice::Flee   ? Place{few.poison.x[k], few.poison.y[k]}
+                                             : choice == Choice::Seek ? Place{few.food.x[k], few.food.y[k]}
+                                                                      : Place{few.x[k], few.y[k]};
+                         intentions[begin + k] = {choice, forces.x[k], forces.y[k], x, y};
+                     }
+                 });
 }
 
 void predict_steering(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
-                      const Items& poison, const SteeringRules& rules, double tick_s,
-                      std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions) {
+                      const Items& poison, const Hunt* hunt, const SteeringRules& rules, double tick_s,
+                      std::uint32_t tick, std::span<const std::uint32_t> bodies_asked,
+                      std::span<Intention> intentions) {
     EVOD_ASSERT(bodies_asked.size() == intentions.size());
     EVOD_ASSERT(rules.weight_count == living.weight_count());
     FewOrganisms few;
     ChosenForces outcome;
     FewBrains few_brains{living, std::min(bodies_asked.size(), FewOrganisms::room)};
-    for_each_few(few, bodies, living, food, poison, bodies_asked, [&](std::size_t begin, std::size_t count) {
-        for (std::size_t k = 0; k < count; ++k) {
-            few_brains.put(k, living, bodies_asked[begin + k]);
-        }
-        brain_kernels().predict(few.columns(), few_brains.columns(), 0, count, rules, outcome.x.data(),
-                                outcome.y.data(), nullptr);
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t body = bodies_asked[begin + k];
-            const float share = rules.is_kinematic ? 1 / (bodies.inverse_mass[body] * static_cast<float>(tick_s)) : 1;
-            const auto force = [&](float value, float velocity) {
-                return rules.is_kinematic ? (value - velocity) * share : value;
-            };
-            intentions[begin + k] = {Choice::Steer, force(outcome.x[k], few.velocity_x[k]),
-                                     force(outcome.y[k], few.velocity_y[k]), few.x[k], few.y[k]};
-        }
-    });
+    for_each_few(few, bodies, living, food, poison, hunt, tick, bodies_asked,
+                 [&](std::size_t begin, std::size_t count) {
+                     for (std::size_t k = 0; k < count; ++k) {
+                         few_brains.put(k, living, bodies_asked[begin + k]);
+                     }
+                     brain_kernels().predict(few.columns(), few_brains.columns(), 0, count, rules, outcome.x.data(),
+                                             outcome.y.data(), nullptr);
+                     for (std::size_t k = 0; k < count; ++k) {
+                         const std::uint32_t body = bodies_asked[begin + k];
+                         const float share =
+                             rules.is_kinematic ? 1 / (bodies.inverse_mass[body] * static_cast<float>(tick_s)) : 1;
+                         const auto force = [&](float value, float velocity) {
+                             return rules.is_kinematic ? (value - velocity) * share : value;
+                         };
+                         intentions[begin + k] = {Choice::Steer, force(outcome.x[k], few.velocity_x[k]),
+                                                  force(outcome.y[k], few.velocity_y[k]), few.x[k], few.y[k]};
+                     }
+                 });
 }
 
 Activations predict_activations(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
-                                const Items& poison, const SteeringRules& rules, std::uint32_t body) {
+                                const Items& poison, const Hunt* hunt, const SteeringRules& rules, std::uint32_t tick,
+                                std::uint32_t body) {
     EVOD_ASSERT(rules.weight_count == living.weight_count());
     FewOrganisms few;
     ChosenForces outcome;
     FewBrains few_brains{living, 1};
     std::array<float, (evolution::brain_inputs_max + evolution::brain_hidden_max + 2) * physics::lanes_max> neurons;
-    for_each_few(few, bodies, living, food, poison, {&body, 1}, [&](std::size_t, std::size_t) {
+    for_each_few(few, bodies, living, food, poison, hunt, tick, {&body, 1}, [&](std::size_t, std::size_t) {
         few_brains.put(0, living, body);
         brain_kernels().predict(few.columns(), few_brains.columns(), 0, 1, rules, outcome.x.data(), outcome.y.data(),
                                 neurons.data());

@@ -20,6 +20,7 @@
 #include "server/parameters/model_parameters.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/brain_kernels.h"
+#include "server/simulation/hunt.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living_organisms.h"
 #include "server/simulation/organism_kernels.h"
@@ -73,17 +74,18 @@ struct Intention {
 /// Predicts what the organisms of `bodies_asked` will choose in `tick` if no item reappears before it. Changes nothing.
 /// `bodies_asked` must contain no placeholders of dead organisms.
 ///
+/// hunt        where the organisms of both species are; nullptr if there are no predators.
 /// intentions  receives one Intention for each element of bodies_asked.
 void predict_intentions(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
-                        const Items& poison, const BehaviourRules& rules, const base::RandomKey& key,
+                        const Items& poison, const Hunt* hunt, const BehaviourRules& rules, const base::RandomKey& key,
                         std::uint32_t tick, std::span<const std::uint32_t> bodies_asked,
                         std::span<Intention> intentions);
 
 /// As predict_intentions(), for organisms with a network. If they are kinematic, the predicted force is the one that
 /// would change the velocity of the body as the network does.
 void predict_steering(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
-                      const Items& poison, const SteeringRules& rules, double tick_s,
-                      std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions);
+                      const Items& poison, const Hunt* hunt, const SteeringRules& rules, double tick_s,
+                      std::uint32_t tick, std::span<const std::uint32_t> bodies_asked, std::span<Intention> intentions);
 
 /// The neurons of a network at the start of the next tick.
 struct Activations {
@@ -92,6 +94,7 @@ struct Activations {
 /// Computes the activations with which the network of an organism will steer it if no item reappears before the next
 /// tick. `body` must not be the placeholder of a dead organism.
 Activations predict_activations(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food,
-                                const Items& poison, const SteeringRules& rules, std::uint32_t body);
+                                const Items& poison, const Hunt* hunt, const SteeringRules& rules, std::uint32_t tick,
+                                std::uint32_t body);
 
 } // namespace evod::simulation

@@ -22,10 +22,10 @@ inline bool is_colony(const parameters::Parameters& parameters) {
 
 /// The island of a world with births at the beginning of an interval.
 struct IslandOpening {
-    std::uint32_t predator_count = 0; // the last organisms
-    std::uint32_t next_number = 0;    // number of the next organism that is born or placed
+    std::uint32_t predator_count = 0;              // the last organisms
+    std::uint32_t next_number = 0;                 // number of the next organism that is born or placed
     std::vector<std::uint32_t> numbers, age_ticks; // by id; ages at the beginning of the interval
-    IslandState state;                // all organisms are alive, and nothing has been placed
+    IslandState state;                             // all organisms are alive, and nothing has been placed
 
     friend bool operator==(const IslandOpening&, const IslandOpening&) = default;
 };

@@ -300,10 +300,15 @@ std::uint32_t Island::place(std::span<const NewOrganism> organisms, const parame
 void Island::append(std::span<const NewOrganism> organisms, const parameters::Parameters& parameters) {
     const std::size_t bodies = bodies_.size();
     const Eigen::Index first = born_.genes.cols();
-    born_.genes.conservativeResize(Eigen::NoChange, first + std::ssize(organisms));
+    const parameters::Parameters of_predators = parameters::of_predators(parameters);
+    std::vector<Arrival> arrivals;
     for (const NewOrganism& organism : organisms) {
-        placed_.push_back(organism.tick);
+        const bool is_child = organism.parents.first != no_parents.first;
+        arrivals.push_back(
+            {organism.tick, organism.parents, is_child && species_of(organism.parents.first) == Species::Predator});
     }
+    born_.genes.conservativeResize(Eigen::NoChange, first + std::ssize(organisms));
+    arrivals_.insert(arrivals_.end(), arrivals.begin(), arrivals.end());
     bodies_.resize(bodies + organisms.size());
     living_.resize(bodies + organisms.size());
     for (std::size_t i = 0; i < organisms.size(); ++i) {
@@ -312,16 +317,21 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
         const BodyShape shape = body_shape(organism.genes[evolution::BodySize], parameters);
         std::ranges::copy(organism.genes, evolution::column(born_.genes, id).begin());
         if (!born_.parents.empty()) {
-            born_.parents.push_back(no_parents);
+            born_.parents.push_back(organism.parents);
         }
-        life_records_.add();
+        life_records_.add(is_colony());
         body_of_.push_back(static_cast<std::uint32_t>(bodies + i));
         bodies_.put(
             bodies + i,
             {.id = id, .x = organism.place.x, .y = organism.place.y, .radius = shape.radius_px, .mass = shape.mass_kg});
-        put_living(bodies + i, id, parameters);
+        const bool is_predator = species_of(id) == Species::Predator;
+        put_living(bodies + i, id, is_predator ? of_predators : parameters);
+        if (is_colony()) {
+            ++colony_[is_predator ? 1 : 0].living;
+        }
         born_hash_ += hash_of_birth(id);
     }
+    hunt_.forget();
     alive_count_ += static_cast<std::uint32_t>(organisms.size());
 }
 
@@ -337,6 +347,9 @@ void Island::remove_organism(std::uint32_t id, std::uint32_t tick) {
     stepper_.near().invalidate();
     living_.health[body] = -std::numeric_limits<float>::infinity();
     --alive_count_;
+    if (is_colony()) {
+        --colony_[static_cast<std::size_t>(species_of(id))].living;
+    }
 }
 
 evolution::NextGeneration Island::bred() const {
@@ -352,7 +365,14 @@ bool Island::is_as_begun() const {
     const auto all_present = [](const Items& items) {
         return items.size() == items.first_count() && items.present_count() == items.size();
     };
-    return placed_.empty() &&
+    if (opening_ != nullptr) {
+        const auto is_same = [](const Items& items, const base::Column<Items::Item>& begun) {
+            return items.size() == begun.size() && std::ranges::equal(items.all(), begun);
+        };
+        return arrivals_.empty() && alive_count_ == bred_count() && is_same(food_, opening_->state.food) &&
+               is_same(poison_, opening_->state.poison);
+    }
+    return arrivals_.empty() &&
            (!has_bodies() || (alive_count_ == bred_count() && all_present(food_) && all_present(poison_)));
 }
 

@@ -15,7 +15,15 @@ namespace {
 
 // The kinds of entities in the state hash, except organisms and what they have eaten (6, meals.cpp). The hashes of
 // every run depend on these numbers.
-enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5, PlacedKind = 7 };
+enum HashKind : std::uint32_t {
+    FoodKind = 2,
+    PoisonKind = 3,
+    CrateKind = 4,
+    ChromosomeKind = 5,
+    PlacedKind = 7,
+    ColonyKind = 9, // number, species, age and parents of an organism of a colony
+    HandlingKind = 10,
+};
 
 bool is_kinematic(const parameters::Parameters& p) {
     return p.controller == evolution::Controller::Network && p.locomotion == evolution::Locomotion::Kinematic;
@@ -31,7 +39,22 @@ physics::StepParameters step_parameters(const parameters::Parameters& p) {
             .max_speed_px_s = static_cast<float>(p.max_speed_px_s)};
 }
 
-ItemRules item_rules(const parameters::Parameters& p) {
+/// The age at which organisms of a species die, at least 1 tick; 0: no age is lethal.
+std::uint32_t lifespan_ticks(const parameters::Parameters& p) {
+    const bool is_lethal = parameters::has_births(p) && p.lifespan_s > 0;
+    return is_lethal ? static_cast<std::uint32_t>(std::max(std::ceil(p.lifespan_s / p.tick_s - 1e-6), 1.0)) : 0;
+}
+
+BehaviourRules behaviour_rules(const parameters::Parameters& p) {
+    return {.flee_rule = p.flee_rule,
+            .lookahead_s = static_cast<float>(p.steering_lookahead_s),
+            .certain_impulse = static_cast<float>(p.flee_certain_impulse),
+            .force_per_unit = static_cast<float>(p.force_per_unit)};
+}
+
+} // namespace
+
+ItemRules Island::item_rules(const parameters::Parameters& p) {
     // The quotient is slightly reduced before it is rounded up, so that 23/60 s are exactly 23 ticks of 1/60 s.
     const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
@@ -44,34 +67,32 @@ ItemRules item_rules(const parameters::Parameters& p) {
             .respawn_ticks = static_cast<std::uint32_t>(std::clamp(ticks, 1.0, 1e9))};
 }
 
-BehaviourRules behaviour_rules(const parameters::Parameters& p) {
-    return {.flee_rule = p.flee_rule,
-            .lookahead_s = static_cast<float>(p.steering_lookahead_s),
-            .certain_impulse = static_cast<float>(p.flee_certain_impulse),
-            .force_per_unit = static_cast<float>(p.force_per_unit)};
-}
-
-} // namespace
-
 void Island::begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
-                              evolution::NextGeneration bred, base::Executor& executor) {
+                              evolution::NextGeneration bred, base::Executor& executor,
+                              std::optional<IslandOpening> opening) {
     EVOD_ASSERT(generation >= 1);
     EVOD_ASSERT(bred.genes.rows() == evolution::gene_count(parameters));
     EVOD_ASSERT(bred.parents.empty() || bred.parents.size() == static_cast<std::size_t>(bred.genes.cols()));
     born_ = {}; // frees the previous chromosomes now: Eigen's move assignment would exchange them with the new ones
     born_ = std::move(bred);
-    placed_.clear();
+    arrivals_.clear();
+    opening_ = opening ? std::make_shared<const IslandOpening>(*std::move(opening)) : nullptr;
+    has_births_ = parameters::has_births(parameters);
+    generation_ = generation;
     behaviour_key_ = base::RandomKey{seed_, base::Purpose::Behaviour, index_, generation};
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
-    life_records_.begin_generation(organisms);
+    life_records_.begin_generation(organisms, simulation::is_colony(parameters));
     counts_ = {};
+    colony_ = {};
+    latest_born_ = {};
+    hunt_ = {};
     food_counts_ = parameters.fitness_per_food != 0;
     poison_counts_ = parameters.fitness_per_poison != 0;
     eaten_hash_ = {};
     brain_ = evolution::brain_layout(parameters);
     is_kinematic_ = is_kinematic(parameters);
     heading_key_ = base::RandomKey{seed_, base::Purpose::Heading, index_, generation};
-    living_.clear(brain_.weight_count());
+    living_.clear(brain_.weight_count(), simulation::is_colony(parameters));
     bodies_.clear();
     boxes_.clear();
     alive_count_ = 0;
@@ -105,7 +126,31 @@ base::StateHash Island::hash_of_birth(std::uint32_t id) const {
     if (id >= bred_count()) {
         hash += base::EntityHash{PlacedKind, id}.add(std::uint64_t{placed_tick(id)}).finish();
     }
+    if (is_colony()) {
+        const evolution::Parents parents = parents_of_child(id);
+        base::EntityHash colony{ColonyKind, id};
+        colony.add(std::uint64_t{species_of(id) == Species::Predator});
+        if (has_births_) {
+            const bool is_old = opening_ != nullptr && id < bred_count();
+            colony.add(std::uint64_t{parents.first} << 32 | parents.second)
+                .add(std::uint64_t{number_of(id)} << 32 | (is_old ? opening_->age_ticks[id] : 0));
+        }
+        hash += colony.finish();
+    }
     return hash;
+}
+
+std::uint32_t Island::number_of(std::uint32_t id) const {
+    if (opening_ == nullptr) {
+        return id;
+    }
+    return id < bred_count() ? opening_->numbers[id] : opening_->next_number + (id - bred_count());
+}
+
+std::uint32_t Island::age_ticks(std::uint32_t id, std::uint32_t tick) const {
+    const std::uint32_t before = opening_ != nullptr && id < bred_count() ? opening_->age_ticks[id] : 0;
+    return before +
+           (life_records_.cause[id] == CauseOfDeath::Alive ? tick - placed_tick(id) : life_records_.lived_ticks[id]);
 }
 
 void Island::fill(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
@@ -136,10 +181,19 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
     for (std::size_t id = 0; id < organisms; ++id) {
         radius[id] = shape_of(id).radius_px;
     }
-    const std::vector<Place> places = place_circles(radius, seed_, index_, generation, area_, BoxGrid{area_, boxes_},
-                                                    executor, static_cast<float>(parameters.spawn_margin_px));
+    std::vector<Place> places;
+    if (opening_ == nullptr) {
+        places = place_circles(radius, seed_, index_, generation, area_, BoxGrid{area_, boxes_}, executor,
+                               static_cast<float>(parameters.spawn_margin_px));
+    } else {
+        for (const IslandState::Organism& organism : opening_->state.organisms) {
+            places.push_back({organism.x, organism.y});
+        }
+    }
     bodies_.resize(organisms);
     living_.resize(organisms);
+    const parameters::Parameters of_predators = parameters::of_predators(parameters);
+    lifespan_ticks_ = {lifespan_ticks(parameters), lifespan_ticks(of_predators)};
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
         for (std::size_t id = range.begin; id < range.end; ++id) {
             bodies_.put(id, {.id = static_cast<std::uint32_t>(id),
@@ -147,7 +201,8 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
                              .y = places[id].y,
                              .radius = radius[id],
                              .mass = shape_of(id).mass_kg});
-            put_living(id, static_cast<std::uint32_t>(id), parameters);
+            const bool is_predator = id >= organisms - born_.predator_count;
+            put_living(id, static_cast<std::uint32_t>(id), is_predator ? of_predators : parameters);
         }
     });
     alive_count_ = static_cast<std::uint32_t>(organisms);
@@ -155,18 +210,28 @@ void Island::fill(const parameters::Parameters& parameters, std::uint64_t genera
     std::iota(body_of_.begin(), body_of_.end(), 0u);
 
     ItemRules rules = item_rules(parameters);
-    rules.count = plan.food_count;
+    rules.count = opening_ == nullptr ? plan.food_count : static_cast<std::uint32_t>(opening_->state.food.size());
     food_.begin_generation(rules, seed_, index_, generation, area_, obstacles_, executor);
-    rules.count = plan.poison_count;
+    rules.count = opening_ == nullptr ? plan.poison_count : static_cast<std::uint32_t>(opening_->state.poison.size());
     rules.placement = base::Purpose::PoisonPlacement;
     rules.respawn_purpose = base::Purpose::PoisonRespawn;
     rules.kind = PoisonKind;
     poison_.begin_generation(rules, seed_, index_, generation, area_, obstacles_, executor);
     perception_.begin(bodies_, living_, food_, poison_);
+    if (is_colony()) {
+        begin_colony(parameters, executor);
+    }
 }
 
 void Island::put_living(std::size_t body, std::uint32_t id, const parameters::Parameters& parameters) {
     living_.put(body, evolution::body_genes(born_.genes, id), parameters);
+    if (living_.in_colony()) {
+        const std::uint32_t lifespan = lifespan_ticks_[static_cast<std::size_t>(species_of(id))];
+        const std::uint32_t age = opening_ != nullptr && id < bred_count() ? opening_->age_ticks[id] : 0;
+        living_.hunts_from[body] = 0;
+        living_.dies_in[body] =
+            lifespan == 0 ? LivingOrganisms::never_old : placed_tick(id) + (lifespan > age ? lifespan - age : 1);
+    }
     if (living_.has_brains()) {
         base::RandomStream random{heading_key_, id};
         const auto heading = static_cast<float>(random.uniform(-base::pi, base::pi));
@@ -214,6 +279,9 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
             perception_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor);
         });
 
+    if (has_predators() && !hunt_.is_located()) {
+        locate();
+    }
     const BehaviourRules rules = behaviour_rules(parameters);
     const SteeringRules steering = steering_rules(brain_, parameters, area_);
     const std::size_t block_count = physics::block_count(bodies_.size());
@@ -222,7 +290,7 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
     executor.parallel_for(block_count, grain, [&](base::Range blocks) {
         for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             if (living_.has_brains()) {
-                act(steering, block);
+                act(steering, tick, block);
             } else {
                 act(rules, tick, block);
             }
@@ -243,8 +311,18 @@ void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_
     const physics::StepCounts step = stepper_.finish(boxes_);
     counts_.too_fast_count += step.too_fast;
     counts_.speed_limit_count += step.speed_limited;
-    const base::StateHash organisms = feed_and_remove_dead(parameters, tick, executor);
+    base::StateHash organisms = feed_and_remove_dead(parameters, tick, executor);
+    if (has_predators()) {
+        organisms += eat_prey(parameters, tick, executor);
+    }
     hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + eaten_hash_ + hash_of_boxes();
+    if (is_colony()) {
+        hash_ += hash_of_handling();
+        if (births_are_due(parameters, tick)) {
+            give_birth(parameters, tick);
+        }
+        count_living();
+    }
 }
 
 void Island::resize_blocks(std::size_t count) {
@@ -280,6 +358,7 @@ void Island::reorder(base::Executor& executor) {
     bodies_.reorder(reordering);
     living_.reorder(reordering);
     perception_.reorder(reordering);
+    hunt_.forget();
     near.follow_reordering(bodies_, executor);
     executor.parallel_for(bodies_.size(), 2 * organisms_per_block, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -295,15 +374,23 @@ void Island::act(const BehaviourRules& rules, std::uint32_t tick, std::size_t bl
     const base::Range range = physics::circles_of_block(bodies_.size(), block);
     perception_.search(bodies_, living_, food_, poison_, range);
     ChosenForces forces;
-    live_and_choose(columns(), rules, behaviour_key_, tick, range, forces);
+    live_and_choose(seen_columns(range, tick), rules, behaviour_key_, tick, range, forces);
     stepper_.accelerate(bodies_, block, {forces.x.data(), forces.y.data()});
 }
 
-void Island::act(const SteeringRules& rules, std::size_t block) {
+OrganismColumns Island::seen_columns(base::Range block, std::uint32_t tick) {
+    OrganismColumns seen = columns();
+    if (has_predators()) {
+        hunt_.look(bodies_, living_, block, tick, seen);
+    }
+    return seen;
+}
+
+void Island::act(const SteeringRules& rules, std::uint32_t tick, std::size_t block) {
     const base::Range range = physics::circles_of_block(bodies_.size(), block);
     perception_.search(bodies_, living_, food_, poison_, range);
     ChosenForces outcome;
-    live_and_steer(columns(), living_, rules, range, outcome);
+    live_and_steer(seen_columns(range, tick), living_, rules, range, outcome);
     if (is_kinematic_) {
         const std::size_t count = range.end - range.begin;
         std::copy_n(outcome.x.begin(), count, bodies_.velocity_x.begin() + static_cast<std::ptrdiff_t>(range.begin));
@@ -320,6 +407,10 @@ void Island::move(std::size_t block) {
     FoundIndices at_food{food_indices}, at_poison{poison_indices};
     const OrganismColumns organisms = columns();
     organism_kernels().follow(organisms, range.begin, range.end, at_food, at_poison);
+    if (has_predators()) {
+        leave_out_predators(at_food);
+        leave_out_predators(at_poison);
+    }
     food_claims_.find_touches(block, {at_food.indices, at_food.count}, bodies_, food_);
     poison_claims_.find_touches(block, {at_poison.indices, at_poison.count}, bodies_, poison_);
 
@@ -335,6 +426,23 @@ void Island::move(std::size_t block) {
     blocks_[block].dying.assign(dying_indices, dying_indices + dying.count);
 }
 
+void Island::leave_out_predators(FoundIndices& found) const {
+    const auto end = std::remove_if(found.indices, found.indices + found.count,
+                                    [&](std::uint32_t body) { return hunt_.is_predator(body); });
+    found.count = static_cast<std::size_t>(end - found.indices);
+}
+
+base::StateHash Island::hash_of_handling() const {
+    base::StateHash hash;
+    for (std::size_t body = 0; has_predators() && body < bodies_.size(); ++body) {
+        if (living_.hunts_from[body] != 0 && !bodies_.is_void(body)) {
+            hash +=
+                base::EntityHash{HandlingKind, bodies_.id[body]}.add(std::uint64_t{living_.hunts_from[body]}).finish();
+        }
+    }
+    return hash;
+}
+
 base::StateHash Island::hash_of_boxes() const {
     base::StateHash hash;
     for (std::uint32_t i = 0; i < crate_count_; ++i) {
@@ -347,7 +455,8 @@ base::StateHash Island::hash_of_boxes() const {
 }
 
 base::StateHash Island::whole_hash() const {
-    base::StateHash hash = born_hash_ + food_.hash() + poison_.hash() + eaten_hash_ + hash_of_boxes();
+    base::StateHash hash =
+        born_hash_ + food_.hash() + poison_.hash() + eaten_hash_ + hash_of_boxes() + hash_of_handling();
     for (std::size_t body = 0; body < bodies_.size(); ++body) {
         if (!bodies_.is_void(body)) {
             hash += hash_of_organism(bodies_, living_, body);
@@ -368,6 +477,10 @@ std::vector<double> Island::fitness(const parameters::Parameters& parameters, st
                                     base::Executor& executor) const {
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
     std::vector<double> fitness(organisms);
+    if (has_births_) {
+        std::ranges::copy(life_records_.children, fitness.begin());
+        return fitness;
+    }
     if (parameters.fitness == parameters::FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
@@ -399,11 +512,13 @@ std::vector<Intention> Island::intentions(const parameters::Parameters& paramete
         }
     }
     std::vector<Intention> of_living(asked_bodies.size());
+    const std::optional<Hunt> hunt = present_hunt();
+    const Hunt* const hunted = hunt ? &*hunt : nullptr;
     if (living_.has_brains()) {
-        predict_steering(bodies_, living_, food_, poison_, steering_rules(brain_, parameters, area_), parameters.tick_s,
-                         asked_bodies, of_living);
+        predict_steering(bodies_, living_, food_, poison_, hunted, steering_rules(brain_, parameters, area_),
+                         parameters.tick_s, tick, asked_bodies, of_living);
     } else {
-        predict_intentions(bodies_, living_, food_, poison_, behaviour_rules(parameters), behaviour_key_, tick,
+        predict_intentions(bodies_, living_, food_, poison_, hunted, behaviour_rules(parameters), behaviour_key_, tick,
                            asked_bodies, of_living);
     }
     std::vector<Intention> intentions(ids.end - ids.begin);
@@ -413,13 +528,24 @@ std::vector<Intention> Island::intentions(const parameters::Parameters& paramete
     return intentions;
 }
 
-std::optional<Activations> Island::activations(const parameters::Parameters& parameters, std::uint32_t id) const {
+std::optional<Hunt> Island::present_hunt() const {
+    if (!has_predators()) {
+        return std::nullopt;
+    }
+    Hunt hunt;
+    hunt.locate(bodies_, area_, [&](std::uint32_t id) { return species_of(id) == Species::Predator; });
+    return hunt;
+}
+
+std::optional<Activations> Island::activations(const parameters::Parameters& parameters, std::uint32_t tick,
+                                               std::uint32_t id) const {
     const auto body = body_of(id);
     if (!body || !living_.has_brains()) {
         return std::nullopt;
     }
-    return predict_activations(bodies_, living_, food_, poison_, steering_rules(brain_, parameters, area_),
-                               static_cast<std::uint32_t>(*body));
+    const std::optional<Hunt> hunt = present_hunt();
+    return predict_activations(bodies_, living_, food_, poison_, hunt ? &*hunt : nullptr,
+                               steering_rules(brain_, parameters, area_), tick, static_cast<std::uint32_t>(*body));
 }
 
 physics::MotionReport Island::motion_report(const parameters::Parameters& parameters) const {
@@ -442,7 +568,11 @@ LiveStatistics Island::live_counts() const {
             .food_eaten = counts_.food_eaten,
             .poison_eaten = counts_.poison_eaten,
             .starved_count = counts_.starved_count,
-            .poisoned_count = counts_.poisoned_count};
+            .poisoned_count = counts_.poisoned_count,
+            .eaten_count = colony_[0].eaten,
+            .old_count = colony_[0].old + colony_[1].old,
+            .born_count = colony_[0].born + colony_[1].born,
+            .predator_count = colony_[1].living};
 }
 
 LiveStatistics Island::live_statistics() const {

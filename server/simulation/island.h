@@ -25,7 +25,9 @@
 #include "server/physics/motion_report.h"
 #include "server/physics/step.h"
 #include "server/simulation/behaviour.h"
+#include "server/simulation/colony.h"
 #include "server/simulation/commands.h"
+#include "server/simulation/hunt.h"
 #include "server/simulation/item_claims.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living_organisms.h"
@@ -34,6 +36,7 @@
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,8 +49,27 @@ class Island {
 
     /// Replaces everything on the island. Creates the organisms whose chromosomes are in `bred`, and places food,
     /// poison, obstacles and crates.
+    ///
+    /// opening  with births, from the second interval on: the state of these organisms, items and crates.
     void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
-                          evolution::NextGeneration bred, base::Executor& executor);
+                          evolution::NextGeneration bred, base::Executor& executor,
+                          std::optional<IslandOpening> opening = std::nullopt);
+
+    /// With births, at the end of an interval: what the island hands over to the next one (interval.cpp). The account
+    /// is that of both species without migration.
+    struct Continuation {
+        evolution::NextGeneration bred;
+        IslandOpening opening;
+    };
+    /// parameters  those of the next interval.
+    /// tick        the last of this one.
+    Continuation continuation(const parameters::Parameters& parameters, std::uint32_t tick,
+                              base::Executor& executor) const;
+    /// Adds the predators that arrive at the beginning of the next interval, whose number is `generation`.
+    void add_predators(Continuation& to, const parameters::Parameters& parameters, std::uint64_t generation) const;
+    /// The organisms of a species from which the next generation comes: with births the living, otherwise all.
+    std::vector<std::uint32_t> breeders(Species species) const;
+    std::uint32_t breeder_count(Species species) const;
 
     /// Frees the copies of the weights that networks read. Until begin_generation(), organisms cannot act. Breeding
     /// reads only the chromosomes, and the weights would be a quarter of the memory that it needs.
@@ -66,7 +88,8 @@ class Island {
     struct NewOrganism {
         Place place;
         std::vector<float> genes;
-        std::uint32_t tick; // it is placed after this tick of the generation
+        std::uint32_t tick; // it is placed or born after this tick of the generation
+        evolution::Parents parents = no_parents;
     };
     std::uint32_t place(std::span<const NewOrganism> organisms, const parameters::Parameters& parameters);
     /// Removes an item that is present, between two ticks.
@@ -103,7 +126,10 @@ class Island {
                                       base::Range ids) const;
 
     /// Predicts the activations of an organism's network in the next tick; nullopt if the organism is dead or has none.
-    std::optional<Activations> activations(const parameters::Parameters& parameters, std::uint32_t id) const;
+    ///
+    /// tick  of the generation: the next one.
+    std::optional<Activations> activations(const parameters::Parameters& parameters, std::uint32_t tick,
+                                           std::uint32_t id) const;
     /// The networks of the organisms; empty if they have none.
     const evolution::BrainLayout& brain() const { return brain_; }
 
@@ -133,16 +159,32 @@ class Island {
     const Items& poison() const { return poison_; }
     const physics::Area& area() const { return area_; }
 
-    // The chromosomes, parents and clamped genes of the organisms, by id. Those that were placed come last. In the
-    // first generation no organism has parents; later, the parents of a placed organism are `no_parents`.
+    // The chromosomes, parents and clamped genes of the organisms, by id. Those that were placed or born come last. In
+    // the first generation no organism has parents here; later, the parents of a placed organism are `no_parents`.
     const evolution::NextGeneration& born() const { return born_; }
-    static constexpr evolution::Parents no_parents{~0U, ~0U};
     /// The number of organisms at the beginning of the generation.
-    std::uint32_t bred_count() const { return static_cast<std::uint32_t>(born_.genes.cols() - std::ssize(placed_)); }
+    std::uint32_t bred_count() const { return static_cast<std::uint32_t>(born_.genes.cols() - std::ssize(arrivals_)); }
     /// born() without the organisms that were placed.
     evolution::NextGeneration bred() const;
     /// The tick of the generation after which an organism was placed; 0 for an organism that was bred.
-    std::uint32_t placed_tick(std::uint32_t id) const { return id < bred_count() ? 0 : placed_[id - bred_count()]; }
+    std::uint32_t placed_tick(std::uint32_t id) const { return id < bred_count() ? 0 : arrival(id).tick; }
+    /// Returns the parents of a child of this interval: ids in this interval. no_parents for all other organisms.
+    evolution::Parents parents_of_child(std::uint32_t id) const {
+        return id < bred_count() ? no_parents : arrival(id).parents;
+    }
+    Species species_of(std::uint32_t id) const {
+        const bool is_predator =
+            id < bred_count() ? id >= bred_count() - born_.predator_count : arrival(id).is_predator;
+        return is_predator ? Species::Predator : Species::Prey;
+    }
+    /// With births: the number of an organism on its island, from 0 in the order of births, for its whole life.
+    std::uint32_t number_of(std::uint32_t id) const;
+    /// With births: the age of a living organism at the end of `tick` of the interval, or of a dead one at its death.
+    std::uint32_t age_ticks(std::uint32_t id, std::uint32_t tick) const;
+    bool is_colony() const { return living_.in_colony(); }
+    bool has_births() const { return has_births_; }
+    const std::array<ColonyCounts, 2>& colony_counts() const { return colony_; } // per species
+    const IslandOpening* opening() const { return opening_.get(); }
     /// Whether nothing has been placed, removed or eaten, and no organism has died.
     bool is_as_begun() const;
     const LifeRecords& life_records() const { return life_records_; }
@@ -151,25 +193,60 @@ class Island {
     /// Returns all live statistics except health_mean, which would need a loop over all organisms.
     LiveStatistics live_counts() const;
 
+    static constexpr evolution::Parents no_parents{~0U, ~0U};
+
   private:
+    /// How an organism arrived that was not there when the generation began.
+    struct Arrival {
+        std::uint32_t tick;
+        evolution::Parents parents;
+        bool is_predator;
+    };
+    const Arrival& arrival(std::uint32_t id) const { return arrivals_[id - bred_count()]; }
     void fill(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor);
     /// Appends organisms, without updating hash_ and what is derived from bodies.
     void append(std::span<const NewOrganism> organisms, const parameters::Parameters& parameters);
     /// The part of born_hash_ that describes one organism.
     base::StateHash hash_of_birth(std::uint32_t id) const;
+    static ItemRules item_rules(const parameters::Parameters& parameters);
     Items& items(ItemKind kind) { return kind == ItemKind::Food ? food_ : poison_; }
     void renew_near_pairs(base::Executor& executor);
     void reorder(base::Executor& executor);
     /// Creates the living organism of a chromosome, with its network if it has one.
+    ///
+    /// parameters  of its species.
     void put_living(std::size_t body, std::uint32_t id, const parameters::Parameters& parameters);
     /// The weights of a network: the genes behind those of the body.
     std::span<const float> weights_of(std::uint32_t id) const;
     void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
-    void act(const SteeringRules& rules, std::size_t block);
+    void act(const SteeringRules& rules, std::uint32_t tick, std::size_t block);
+    /// The columns of a block, with what its organisms see.
+    OrganismColumns seen_columns(base::Range block, std::uint32_t tick);
     void move(std::size_t block);
     /// Lets organisms eat, and removes the organisms that die. Returns the hash of the living organisms.
     base::StateHash feed_and_remove_dead(const parameters::Parameters& parameters, std::uint32_t tick,
                                          base::Executor& executor);
+    // Colonies: predators eat prey (meals.cpp); organisms have children (births.cpp). Both return the change of
+    // the hash of the living organisms.
+    bool has_predators() const { return colony_[1].living > 0; }
+    void begin_colony(const parameters::Parameters& parameters, base::Executor& executor);
+    void locate() {
+        hunt_.locate(bodies_, area_, [&](std::uint32_t id) { return species_of(id) == Species::Predator; });
+    }
+    /// Where the organisms are now; nullopt without predators.
+    std::optional<Hunt> present_hunt() const;
+    void leave_out_predators(FoundIndices& found) const;
+    struct Block;
+    void add_deaths(const Block& block);
+    base::StateHash eat_prey(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+    base::StateHash hash_of_handling() const;
+    /// Returns the prey that a predator touches and may eat; BodyGrid::none if there is none.
+    std::uint32_t touched_prey(std::uint32_t predator, std::uint32_t tick) const;
+    bool births_are_due(const parameters::Parameters& parameters, std::uint32_t tick) const;
+    void give_birth(const parameters::Parameters& parameters, std::uint32_t tick);
+    class Nursery;
+    void add_to_latest(Species species, evolution::ConstGenes genes);
+    void count_living();
     base::StateHash hash_of_boxes() const;
     /// Returns the hash of what one organism has eaten. It covers only kinds of items whose weight in the fitness is
     /// not 0; otherwise the numbers of eaten items do not affect the run.
@@ -185,6 +262,8 @@ class Island {
         std::vector<std::uint32_t> dying; // bodies whose health was at most 0 before they ate
         base::StateHash food_hash_change, poison_hash_change, eaten_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
+        using Deaths = std::array<std::uint32_t, 6>; // by CauseOfDeath
+        std::array<Deaths, 2> deaths{};              // in colonies, per species
     };
     /// Processes food and poison, in parallel if that is faster.
     template <class OfFood, class OfPoison>
@@ -217,7 +296,7 @@ class Island {
     physics::StepParameters step_parameters_;
     physics::Stepper stepper_;
     evolution::NextGeneration born_;
-    std::vector<std::uint32_t> placed_; // placed_tick() of the organisms that were placed
+    std::vector<Arrival> arrivals_; // of the organisms that were placed or born
     LivingOrganisms living_;
     physics::Circles bodies_;
     physics::Boxes boxes_;
@@ -234,6 +313,15 @@ class Island {
     base::StateHash eaten_hash_;          // sum of hash_of_eaten() over all organisms
     bool food_counts_ = false, poison_counts_ = false; // whether the fitness depends on the numbers of eaten items
     base::StateHash hash_;
+
+    // Colonies
+    std::shared_ptr<const IslandOpening> opening_; // of this interval; nullptr in the first one
+    std::array<ColonyCounts, 2> colony_{};         // per species
+    Hunt hunt_;
+    std::array<std::vector<float>, 2> latest_born_; // per species, with shuffle_births: chromosomes, oldest first
+    bool has_births_ = false;
+    std::uint64_t generation_ = 1;
+    std::array<std::uint32_t, 2> lifespan_ticks_{}; // per species; 0: no age is lethal
 
     std::vector<Block> blocks_; // kept between ticks
     base::Column<std::uint32_t> spare_column_;

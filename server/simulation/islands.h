@@ -18,6 +18,7 @@
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -66,8 +67,21 @@ struct IslandOutcome {
 struct IslandSummary {
     base::StateHash hash;
     std::uint32_t alive_count = 0;
-    std::uint32_t organism_count = 0; // of this generation, with those that were placed
-    bool is_as_begun = false;         // Island::is_as_begun(), at the first moment of a generation; otherwise false
+    std::uint32_t organism_count = 0;              // of this generation, with those that were placed
+    std::array<std::uint32_t, 2> breeder_counts{}; // Island::breeder_count() of the prey and of the predators
+    bool is_as_begun = false; // Island::is_as_begun(), at the first moment of a generation; otherwise false
+};
+
+/// The number that keys the draws of a migration; that of predators differs.
+constexpr std::uint64_t migration_key(std::uint64_t generation, Species species) {
+    return generation | static_cast<std::uint64_t>(species) << 63;
+}
+
+/// The migrants of an epoch.
+struct Routes {
+    std::vector<evolution::MigrationRoute> prey, predators;
+
+    bool empty() const { return prey.empty() && predators.empty(); }
 };
 
 /// Ticks [first, last] of a generation.
@@ -114,10 +128,11 @@ class Islands {
     /// several objectives, the standing takes the place of the fitness; migrants keep that of their island. If
     /// shuffle_fitness is on, the shuffled fitness decides migration, survival and breeding, and nothing else.
     ///
-    /// generation  the generation that has ended.
+    /// generation  the generation that has ended; with births, an interval, after which the living live on.
+    /// tick        its last tick.
     /// routes      the migrants of this epoch; empty if there are none.
     virtual void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
-                                       std::span<const evolution::MigrationRoute> routes, base::Executor& executor) = 0;
+                                       std::uint32_t tick, const Routes& routes, base::Executor& executor) = 0;
     /// Places or removes entities after a tick of the generation. check() has accepted the command (entities.h).
     ///
     /// returns  the ids of the new entities, without island and generation.

@@ -100,7 +100,7 @@ const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, boo
             return "position of an item";
         }
         const bool reappears =
-            rules_.respawn && id < rules_.count && item.due_tick <= last_due && (item.due_tick > tick || resting);
+            (rules_.respawn || item.due_tick == 1) && id < rules_.count && item.due_tick <= last_due && (item.due_tick > tick || resting);
         if (item.due_tick != 0 && item.due_tick != none && !reappears) {
             return "due tick of an item";
         }

@@ -23,13 +23,18 @@ void for_each_column(LivingOrganisms& living, F&& visit) {
         visit(living.heading, 0.0f);
         visit(living.base_health, 0.0f);
     }
+    if (living.in_colony()) {
+        visit(living.hunts_from, 0u);
+        visit(living.dies_in, LivingOrganisms::never_old);
+    }
 }
 
 /// Returns the health lost per tick: the rate times 1 + the costs of the genes, never below 0.
 float loss_per_tick(const evolution::BodyGenes& genes, const parameters::Parameters& p) {
     const auto share = [&](evolution::Gene gene) { return static_cast<double>(genes(gene)) / 100; };
     const auto square = [](double x) { return x * x; };
-    const double factor = 1 + p.normal_speed_cost * (share(evolution::NormalSpeed) - 1) +
+    const double factor = 1 + p.body_size_cost * (share(evolution::BodySize) - 1) +
+                          p.normal_speed_cost * (share(evolution::NormalSpeed) - 1) +
                           p.impulse_cost * (square(share(evolution::Impulse)) - 1) +
                           p.base_health_cost * (share(evolution::BaseHealth) - 1) +
                           p.food_radius_cost * (square(share(evolution::FoodRadius)) - 1) +
@@ -39,14 +44,15 @@ float loss_per_tick(const evolution::BodyGenes& genes, const parameters::Paramet
 
 } // namespace
 
-void LivingOrganisms::clear(std::uint32_t weight_count) {
-    for_each_column(*this, [](auto& column, float) { column.clear(); });
+void LivingOrganisms::clear(std::uint32_t weight_count, bool in_colony) {
+    for_each_column(*this, [](auto& column, auto) { column.clear(); });
     weights.clear();
     weight_count_ = weight_count;
+    in_colony_ = in_colony;
 }
 
 void LivingOrganisms::resize(std::size_t size) {
-    for_each_column(*this, [&](auto& column, float filling) {
+    for_each_column(*this, [&](auto& column, auto filling) {
         column.resize(size, filling);
         column.resize(physics::padded(size), filling);
     });
@@ -82,7 +88,7 @@ void LivingOrganisms::put_weights(std::size_t body, std::span<const float> new_w
 }
 
 void LivingOrganisms::reorder(const physics::Reordering& reordering) {
-    for_each_column(*this, [&](auto& column, float filling) { reordering.apply(column, filling); });
+    for_each_column(*this, [&](auto& column, auto filling) { reordering.apply(column, filling); });
     weights.resize(physics::padded(reordering.size()) * weight_count_);
 }
 
@@ -121,18 +127,22 @@ base::StateHash hash_of_organism(const physics::Circles& bodies, const LivingOrg
     return hash;
 }
 
-void LifeRecords::begin_generation(std::size_t organisms) {
+void LifeRecords::begin_generation(std::size_t organisms, bool in_colony) {
     lived_ticks.assign(organisms, 0);
     cause.assign(organisms, CauseOfDeath::Alive);
     food_eaten.assign(organisms, 0);
     poison_eaten.assign(organisms, 0);
+    children.assign(in_colony ? organisms : 0, 0);
 }
 
-void LifeRecords::add() {
+void LifeRecords::add(bool in_colony) {
     lived_ticks.push_back(0);
     cause.push_back(CauseOfDeath::Alive);
     food_eaten.push_back(0);
     poison_eaten.push_back(0);
+    if (in_colony) {
+        children.push_back(0);
+    }
 }
 
 } // namespace evod::simulation

@@ -32,11 +32,18 @@ struct LivingOrganisms {
     base::Column<float> heading;     // radians, −π … π
     base::Column<float> base_health; // gene units
     base::Column<float> weights;     // in the order of BrainColumns::weights
-    // Only in colonies; otherwise empty. The ticks of the generation are those at whose end it happens.
-    base::Column<std::uint32_t> hunts_from; // a predator hunts again from this tick on; 0 if it does not handle a meal
+    // Only in colonies; otherwise empty. Ticks are those of the generation.
+    base::Column<std::uint32_t> hunts_from; // a predator hunts again from this tick on; 0: it handles no prey
+    base::Column<std::uint32_t> dies_in;    // the tick at whose end it dies of age; never_old: it does not
 
-    /// Removes all organisms. weight_count  the number of weights of each network; 0: the organisms have none.
-    void clear(std::uint32_t weight_count = 0);
+    static constexpr std::uint32_t never_old = ~0U;
+
+    /// Removes all organisms.
+    ///
+    /// weight_count  the number of weights of each network; 0: the organisms have none.
+    /// in_colony     whether there are the columns of colonies.
+    void clear(std::uint32_t weight_count = 0, bool in_colony = false);
+    bool in_colony() const { return in_colony_; }
     std::uint32_t weight_count() const { return weight_count_; }
     bool has_brains() const { return weight_count_ > 0; }
     /// resize() and put() work like those of physics::Circles.
@@ -56,6 +63,7 @@ struct LivingOrganisms {
 
   private:
     std::uint32_t weight_count_ = 0;
+    bool in_colony_ = false;
 };
 
 /// Returns the limit above which a meal cannot raise health, > 0; infinity if there is no limit.
@@ -81,9 +89,10 @@ struct LifeRecords {
     std::vector<std::uint32_t> food_eaten, poison_eaten; // a predator's food is prey
     std::vector<std::uint32_t> children;                 // in its whole life; only in colonies (colony.h)
 
-    void begin_generation(std::size_t organisms);
+    /// in_colony  whether children are counted.
+    void begin_generation(std::size_t organisms, bool in_colony = false);
     /// Adds a living organism.
-    void add();
+    void add(bool in_colony = false);
     friend bool operator==(const LifeRecords&, const LifeRecords&) = default;
 };
 

@@ -20,6 +20,21 @@ std::unique_ptr<Islands> make_islands(base::Seed seed, std::uint32_t island_coun
     return std::make_unique<LocalIslands>(seed, base::Range{0, island_count});
 }
 
+namespace {
+
+/// Adds the predators of the first generation.
+void draw_predators(evolution::NextGeneration& to, const parameters::Parameters& parameters, base::Seed seed,
+                    std::uint32_t island) {
+    const parameters::Parameters of_predators = parameters::of_predators(parameters);
+    const evolution::GeneMatrix genes =
+        evolution::initial_population(of_predators.population_size, of_predators, seed, island | 1u << 31);
+    to.genes.conservativeResize(Eigen::NoChange, to.genes.cols() + genes.cols());
+    to.genes.rightCols(genes.cols()) = genes;
+    to.predator_count = of_predators.population_size;
+}
+
+} // namespace
+
 LocalIslands::LocalIslands(base::Seed seed, base::Range indices) : seed_{seed}, first_{indices.begin} {
     for (std::size_t index = indices.begin; index < indices.end; ++index) {
         islands_.emplace_back(seed, static_cast<std::uint32_t>(index));
@@ -39,10 +54,12 @@ void LocalIslands::for_each_island(base::Executor& executor, Body&& body) const 
 void LocalIslands::summarise(bool at_first_moment) {
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         const Island& island = islands_[i];
-        summaries_[i] = {.hash = island.hash(),
-                         .alive_count = island.alive_count(),
-                         .organism_count = static_cast<std::uint32_t>(island.born().genes.cols()),
-                         .is_as_begun = at_first_moment && island.is_as_begun()};
+        summaries_[i] = {
+            .hash = island.hash(),
+            .alive_count = island.alive_count(),
+            .organism_count = static_cast<std::uint32_t>(island.born().genes.cols()),
+            .breeder_counts = {island.breeder_count(Species::Prey), island.breeder_count(Species::Predator)},
+            .is_as_begun = at_first_moment && island.is_as_begun()};
     }
 }
 
@@ -59,7 +76,11 @@ void LocalIslands::begin_generation(const parameters::Parameters& parameters, st
             bred.islands[i].genes =
                 evolution::initial_population(parameters.population_size, parameters, seed_, islands_[i].index());
         }
-        islands_[i].begin_generation(parameters, generation, std::move(bred.islands[i]), executor);
+        if (generation == 1 && parameters.predator_from == 1 && bred.islands[i].predator_count == 0) {
+            draw_predators(bred.islands[i], parameters, seed_, islands_[i].index());
+        }
+        islands_[i].begin_generation(parameters, generation, std::move(bred.islands[i]), executor,
+                                     bred.openings.empty() ? std::nullopt : std::optional{std::move(bred.openings[i])});
     });
     founders_ = std::move(bred.founders);
     if (generation == 1) {
@@ -79,9 +100,7 @@ void LocalIslands::restore(const parameters::Parameters& begun_with, const World
     const auto tick = static_cast<std::uint32_t>(state.moment.generation_tick);
     for_each_island(executor,
                     [&](std::size_t i) { islands_[i].restore(state.islands[i], tick, begun_with, executor); });
-    for (std::size_t i = 0; i < founders_.size(); ++i) {
-        founders_[i].resize(islands_[i].life_records().cause.size(), no_founder);
-    }
+    find_founders();
     if (!state.ratings.empty()) {
         use(state.ratings, state.parameters.active);
     } else if (!state.ended.empty()) {
@@ -106,6 +125,9 @@ Advanced LocalIslands::advance(const parameters::Parameters& parameters, Generat
         for (std::size_t i = 0; i < islands_.size(); ++i) {
             summaries_[i].hash = islands_[i].hash();
             summaries_[i].alive_count = islands_[i].alive_count();
+            summaries_[i].organism_count = static_cast<std::uint32_t>(islands_[i].born().genes.cols());
+            summaries_[i].breeder_counts = {islands_[i].breeder_count(Species::Prey),
+                                            islands_[i].breeder_count(Species::Predator)};
             summaries_[i].is_as_begun = false;
             alive_count += islands_[i].alive_count();
             if (died_out_[i]) {
@@ -113,6 +135,7 @@ Advanced LocalIslands::advance(const parameters::Parameters& parameters, Generat
             }
         }
         if (alive_count == 0 || tick == ticks.last) {
+            find_founders();
             return {tick, alive_count};
         }
     }
@@ -161,38 +184,50 @@ std::vector<GenerationStatistics> LocalIslands::end_generation(const parameters:
     }
     std::vector<GenerationStatistics> statistics;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
-        statistics.push_back(generation_statistics(islands_[i], parameters, fitness_[i], executor));
+        statistics.push_back(generation_statistics(islands_[i], parameters, fitness_[i], tick, executor));
     }
     return statistics;
 }
 
 void LocalIslands::breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
-                                         std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
-                                         const std::function<void(std::vector<Migrants>&)>& carry) {
-    const auto key_of = [&](std::size_t i) -> evolution::BreedingKey {
-        return {.seed = seed_, .island = islands_[i].index(), .generation = generation};
-    };
+                                         std::uint32_t tick, const Routes& routes, base::Executor& executor,
+                                         const Carry& carry) {
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         if (!objectives_.empty() && !objectives_[i].empty()) {
             fitness_[i] = evolution::standing({objectives_[i], parameters.objectives});
         }
         if (parameters.shuffle_fitness) {
-            evolution::shuffle_fitness(fitness_[i], key_of(i), executor);
+            evolution::shuffle_fitness(fitness_[i], key_of(i, Species::Prey, generation), executor);
         }
         islands_[i].free_weights();
     }
-    std::vector<evolution::GeneMatrix> with_migrants;
+    if (is_colony(parameters)) {
+        begin_generation(parameters, generation + 1,
+                         parameters::has_births(parameters)
+                             ? continued(parameters, generation, tick, routes, executor, carry)
+                             : bred_with_predators(parameters, generation, routes, executor, carry),
+                         executor);
+        return;
+    }
+    Breeders migrated;
     if (!routes.empty()) {
-        with_migrants = migrated(parameters, generation, routes, carry);
+        for (std::size_t i = 0; i < islands_.size(); ++i) {
+            migrated.genes.push_back(breeding_genes(i));
+        }
+        migrated.fitness = std::move(fitness_);
+        migrated.founders = std::move(founders_);
+        (void)migrate(migrated, parameters, generation, routes.prey, carry);
+        fitness_ = std::move(migrated.fitness);
+        founders_ = std::move(migrated.founders);
     }
     BredIslands bred{.islands = std::vector<evolution::NextGeneration>(islands_.size()),
                      .founders = std::move(founders_)};
     for_each_island(executor, [&](std::size_t i) {
         const evolution::GeneMatrix& born = breeding_genes(i);
-        const evolution::GeneMatrix& genes = routes.empty() ? born : with_migrants[i];
+        const evolution::GeneMatrix& genes = routes.empty() ? born : migrated.genes[i];
         evolution::NextGeneration& next = bred.islands[i];
-        next =
-            evolution::next_generation(fitness_[i], genes, parameters, parameters.population_size, key_of(i), executor);
+        next = evolution::next_generation(fitness_[i], genes, parameters, parameters.population_size,
+                                          key_of(i, Species::Prey, generation), executor);
         next.account = evolution::account_for(born, genes, next.genes, next.parents, executor);
     });
     for (std::size_t i = 0; i < bred.founders.size(); ++i) {
@@ -206,30 +241,26 @@ void LocalIslands::breed_next_generation(const parameters::Parameters& parameter
     begin_generation(parameters, generation + 1, std::move(bred), executor);
 }
 
-std::vector<evolution::GeneMatrix> LocalIslands::migrated(const parameters::Parameters& parameters,
-                                                          std::uint64_t generation,
-                                                          std::span<const evolution::MigrationRoute> routes,
-                                                          const std::function<void(std::vector<Migrants>&)>& carry) {
-    std::vector<evolution::GeneMatrix> genes;
-    for (std::size_t i = 0; i < islands_.size(); ++i) {
-        genes.push_back(breeding_genes(i));
-    }
-    std::vector<evolution::Ranking> rankings(fitness_.begin(), fitness_.end());
+std::vector<std::vector<std::uint32_t>>
+LocalIslands::migrate(Breeders& breeders, const parameters::Parameters& parameters, std::uint64_t key,
+                      std::span<const evolution::MigrationRoute> routes, const Carry& carry) const {
+    std::vector<evolution::Ranking> rankings(breeders.fitness.begin(), breeders.fitness.end());
     std::vector<Migrants> migrants(routes.size());
     for (std::size_t r = 0; r < routes.size(); ++r) {
         if (!holds(routes[r].from)) {
             continue;
         }
         const std::size_t from = routes[r].from - first_;
-        const auto leaving = evolution::emigrants(routes[r], rankings[from], parameters, seed_, generation);
-        migrants[r].genes.resize(genes[from].rows(), std::ssize(leaving));
+        const auto leaving = evolution::emigrants(routes[r], rankings[from], parameters, seed_, key);
+        migrants[r].genes.resize(breeders.genes[from].rows(), std::ssize(leaving));
         for (const std::uint32_t organism : leaving) {
-            migrants[r].genes.col(std::ssize(migrants[r].fitness)) = genes[from].col(organism);
-            migrants[r].fitness.push_back(fitness_[from][organism]);
-            migrants[r].founders.push_back(founders_.empty() ? no_founder : founders_[from][organism]);
+            migrants[r].genes.col(std::ssize(migrants[r].fitness)) = breeders.genes[from].col(organism);
+            migrants[r].fitness.push_back(breeders.fitness[from][organism]);
+            migrants[r].founders.push_back(breeders.founders.empty() ? no_founder : breeders.founders[from][organism]);
         }
     }
-    carry(migrants);
+    carry(routes, migrants);
+    std::vector<std::vector<std::uint32_t>> all_replaced(breeders.genes.size());
     std::vector<std::uint32_t> replaced;              // on the island `to` of the previous route
     for (std::size_t r = 0; r < routes.size(); ++r) { // ordered by (to, from)
         const evolution::MigrationRoute& route = routes[r];
@@ -238,18 +269,29 @@ std::vector<evolution::GeneMatrix> LocalIslands::migrated(const parameters::Para
         }
         const std::size_t to = route.to - first_;
         if (r == 0 || routes[r - 1].to != route.to) {
-            replaced = evolution::replaced_first(route.to, rankings[to], parameters, seed_, generation);
+            replaced = evolution::replaced_first(route.to, rankings[to], parameters, seed_, key);
         }
         for (std::uint32_t i = 0; i < route.count; ++i) {
             const std::uint32_t place = replaced[route.first_place + i];
-            genes[to].col(place) = migrants[r].genes.col(i);
-            fitness_[to][place] = migrants[r].fitness[i];
-            if (!founders_.empty()) {
-                founders_[to][place] = migrants[r].founders[i];
+            breeders.genes[to].col(place) = migrants[r].genes.col(i);
+            breeders.fitness[to][place] = migrants[r].fitness[i];
+            if (!breeders.founders.empty()) {
+                breeders.founders[to][place] = migrants[r].founders[i];
             }
+            all_replaced[to].push_back(place);
         }
     }
-    return genes;
+    return all_replaced;
+}
+
+void LocalIslands::find_founders() {
+    for (std::size_t i = 0; i < founders_.size(); ++i) {
+        const Island& island = islands_[i];
+        while (founders_[i].size() < island.life_records().cause.size()) {
+            const std::uint32_t parent = island.parents_of_child(static_cast<std::uint32_t>(founders_[i].size())).first;
+            founders_[i].push_back(parent == Island::no_parents.first ? no_founder : founders_[i][parent]);
+        }
+    }
 }
 
 EntityIds LocalIslands::place(const PlaceEntities& command, const parameters::Parameters& parameters,
@@ -268,9 +310,7 @@ EntityIds LocalIslands::place(const PlaceEntities& command, const parameters::Pa
     if (!organisms.empty()) {
         ids.organisms.resize(organisms.size());
         std::iota(ids.organisms.begin(), ids.organisms.end(), island.place(organisms, parameters));
-        if (!founders_.empty()) {
-            founders_[command.island - first_].resize(island.life_records().cause.size(), no_founder);
-        }
+        find_founders();
     }
     summarise(tick == 0);
     return ids;
@@ -298,6 +338,11 @@ BredIslands LocalIslands::bred() const {
     for (std::size_t i = 0; i < founders_.size(); ++i) {
         bred.founders[i].resize(islands_[i].bred_count());
     }
+    if (islands_.front().opening() != nullptr) {
+        for (const Island& island : islands_) {
+            bred.openings.push_back(*island.opening());
+        }
+    }
     return bred;
 }
 
@@ -307,6 +352,11 @@ std::vector<IslandOutcome> LocalIslands::outcomes() const {
         const LifeRecords& life_records = islands_[i].life_records();
         outcomes.push_back(
             {.fitness = fitness_[i], .lived_ticks = life_records.lived_ticks, .cause = life_records.cause});
+        if (islands_[i].has_births()) {
+            for (std::uint32_t id = islands_[i].bred_count(); id < life_records.cause.size(); ++id) {
+                outcomes.back().births.push_back({islands_[i].placed_tick(id), islands_[i].parents_of_child(id)});
+            }
+        }
         if (!objectives_.empty()) {
             outcomes.back().objectives = objectives_[i];
             outcomes.back().repaired.assign(repaired_[i].data(), repaired_[i].data() + repaired_[i].size());

@@ -32,17 +32,17 @@ class LocalIslands final : public Islands {
                      std::vector<DiedOut>& died_out) override;
     std::vector<GenerationStatistics> end_generation(const parameters::Parameters& parameters, std::uint32_t tick,
                                                      std::span<const Rating> given, base::Executor& executor) override;
-    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
-                               std::span<const evolution::MigrationRoute> routes, base::Executor& executor) override {
-        breed_next_generation(parameters, generation, routes, executor, [](std::vector<Migrants>&) {});
+    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation, std::uint32_t tick,
+                               const Routes& routes, base::Executor& executor) override {
+        breed_next_generation(parameters, generation, tick, routes, executor,
+                              [](std::span<const evolution::MigrationRoute>, std::vector<Migrants>&) {});
     }
+    /// carry(routes, migrants) gets the migrants of each route that begins on one of these islands, by route. It adds
+    /// those of the routes that end on one of them. Called once for each species that has routes.
+    using Carry = std::function<void(std::span<const evolution::MigrationRoute>, std::vector<Migrants>&)>;
     /// The same, with migrants from and to other islands of the world.
-    ///
-    /// carry  carry(migrants) gets the migrants of each route that begins on one of these islands, by route. It adds
-    ///        those of the routes that end on one of them. Called if there are routes.
-    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
-                               std::span<const evolution::MigrationRoute> routes, base::Executor& executor,
-                               const std::function<void(std::vector<Migrants>&)>& carry);
+    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation, std::uint32_t tick,
+                               const Routes& routes, base::Executor& executor, const Carry& carry);
     EntityIds place(const PlaceEntities& command, const parameters::Parameters& parameters,
                     std::uint32_t tick) override;
     void remove(const RemoveEntities& command, std::uint32_t tick) override;
@@ -72,11 +72,31 @@ class LocalIslands final : public Islands {
     /// The chromosomes from which element i of islands_ breeds.
     const evolution::GeneMatrix& breeding_genes(std::size_t i) const;
     void find_fitness(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
-    /// Returns the chromosomes of every island after migrants have replaced some, and changes fitness_ and founders_ in
-    /// the same way.
-    std::vector<evolution::GeneMatrix> migrated(const parameters::Parameters& parameters, std::uint64_t generation,
-                                                std::span<const evolution::MigrationRoute> routes,
-                                                const std::function<void(std::vector<Migrants>&)>& carry);
+    /// The organisms of a species from which the next generation comes, per island.
+    struct Breeders {
+        std::vector<evolution::GeneMatrix> genes;
+        std::vector<std::vector<double>> fitness;
+        Founders founders; // empty if unknown
+    };
+    /// Lets migrants replace organisms. Returns the places of the replaced ones, per island.
+    ///
+    /// key  keys the draws: the number of the generation.
+    std::vector<std::vector<std::uint32_t>> migrate(Breeders& breeders, const parameters::Parameters& parameters,
+                                                    std::uint64_t key,
+                                                    std::span<const evolution::MigrationRoute> routes,
+                                                    const Carry& carry) const;
+    // The parts of breed_next_generation() of colonies (local_colonies.cpp).
+    BredIslands bred_with_predators(const parameters::Parameters& parameters, std::uint64_t generation,
+                                    const Routes& routes, base::Executor& executor, const Carry& carry);
+    BredIslands continued(const parameters::Parameters& parameters, std::uint64_t generation, std::uint32_t tick,
+                          const Routes& routes, base::Executor& executor, const Carry& carry);
+    evolution::BreedingKey key_of(std::size_t i, Species species, std::uint64_t generation) const {
+        return {.seed = seed_,
+                .island = islands_[i].index() | static_cast<std::uint32_t>(species) << 31,
+                .generation = generation};
+    }
+    /// Gives children the founders of their first parents.
+    void find_founders();
     void summarise(bool at_first_moment);
 
     base::Seed seed_;

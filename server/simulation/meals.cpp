@@ -2,7 +2,10 @@
 #include "server/simulation/island.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
 
 namespace evod::simulation {
 
@@ -31,6 +34,9 @@ base::StateHash Island::feed_and_remove_dead(const parameters::Parameters& param
         counts_.starved_count += block.starved;
         counts_.poisoned_count += block.poisoned;
         alive_count_ -= block.starved + block.poisoned;
+        if (is_colony()) {
+            add_deaths(block);
+        }
     }
     const auto take_out = [this](Items& items, const ItemClaims& claims) {
         constexpr std::size_t blocks_ahead = 4;
@@ -57,6 +63,7 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
     Block& block = blocks_[index];
     block.food_hash_change = block.poison_hash_change = block.eaten_hash_change = {};
     block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
+    block.deaths = {};
     for (const Touch& touch : food_claims_.touches(index)) {
         food_.prefetch_item(touch.item);
         __builtin_prefetch(&life_records_.food_eaten[touch.id], 1);
@@ -105,6 +112,28 @@ void Island::feed_and_remove_dead_in_block(const parameters::Parameters& paramet
             ++block.starved;
         }
     }
+    if (lifespan_ticks_[0] > 0 || lifespan_ticks_[1] > 0) {
+        const base::Range range = physics::circles_of_block(bodies_.size(), index);
+        for (std::size_t body = range.begin; body < range.end; ++body) {
+            if (living_.dies_in[body] <= tick && !bodies_.is_void(body)) {
+                record_death(block, static_cast<std::uint32_t>(body), tick, CauseOfDeath::Old);
+            }
+        }
+    }
+}
+
+void Island::add_deaths(const Block& block) {
+    for (std::size_t species = 0; species < colony_.size(); ++species) {
+        ColonyCounts& counts = colony_[species];
+        const Block::Deaths& deaths = block.deaths[species];
+        const auto of = [&](CauseOfDeath cause) { return deaths[static_cast<std::size_t>(cause)]; };
+        counts.starved += of(CauseOfDeath::Starved);
+        counts.poisoned += of(CauseOfDeath::Poisoned);
+        counts.eaten += of(CauseOfDeath::Eaten);
+        counts.old += of(CauseOfDeath::Old);
+        counts.living -= std::accumulate(deaths.begin(), deaths.end(), 0u);
+        alive_count_ -= of(CauseOfDeath::Eaten) + of(CauseOfDeath::Old);
+    }
 }
 
 template <class Change>
@@ -139,12 +168,84 @@ void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, 
     const std::uint32_t id = bodies_.id[body];
     life_records_.cause[id] = cause;
     life_records_.lived_ticks[id] = tick - placed_tick(id);
+    if (is_colony()) {
+        ++block.deaths[static_cast<std::size_t>(species_of(id))][static_cast<std::size_t>(cause)];
+    }
     block.hash -= hash_of_organism(bodies_, living_, body);
     body_of_[id] = no_body;
     bodies_.remove(body);
     perception_.remove(body);
     stepper_.near().remove(body);
     living_.health[body] = -std::numeric_limits<float>::infinity();
+}
+
+// Predation. A predator that handles no prey claims the nearest living prey that it touches; equal distances: the lowest
+// id. A prey that several predators claim goes to the nearest of them, the others get nothing. Prey that poison, hunger
+// or age has killed in the same tick are dead already.
+
+std::uint32_t Island::touched_prey(std::uint32_t predator, std::uint32_t tick) const {
+    if (bodies_.is_void(predator) || living_.hunts_from[predator] > tick) {
+        return BodyGrid::none;
+    }
+    const physics::Coordinate x = bodies_.x[predator], y = bodies_.y[predator];
+    const float radius = bodies_.radius[predator];
+    return hunt_.prey().nearest(bodies_, x, y, radius + hunt_.widest_prey_px(), [&](std::uint32_t prey) {
+        const float dx = physics::distance_px(x, bodies_.x[prey]), dy = physics::distance_px(y, bodies_.y[prey]);
+        const float reach = radius + bodies_.radius[prey];
+        return dx * dx + dy * dy <= reach * reach;
+    });
+}
+
+base::StateHash Island::eat_prey(const parameters::Parameters& parameters, std::uint32_t tick,
+                                 base::Executor& executor) {
+    locate();
+    const std::span<const std::uint32_t> predators = hunt_.predators().members();
+    std::vector<std::uint32_t> claimed(predators.size());
+    constexpr std::size_t predators_per_piece = 256;
+    executor.parallel_for(predators.size(), predators_per_piece, [&](base::Range range) {
+        for (std::size_t k = range.begin; k < range.end; ++k) {
+            claimed[k] = touched_prey(predators[k], tick);
+        }
+    });
+
+    struct Claim {
+        std::uint32_t prey;
+        float square;
+        std::uint32_t id, predator;
+    };
+    std::vector<Claim> claims;
+    for (std::size_t k = 0; k < predators.size(); ++k) {
+        if (const std::uint32_t prey = claimed[k]; prey != BodyGrid::none) {
+            const std::uint32_t predator = predators[k];
+            const float dx = physics::distance_px(bodies_.x[predator], bodies_.x[prey]),
+                        dy = physics::distance_px(bodies_.y[predator], bodies_.y[prey]);
+            claims.push_back({prey, dx * dx + dy * dy, bodies_.id[predator], predator});
+        }
+    }
+    std::ranges::sort(claims, {}, [](const Claim& claim) { return std::tuple{claim.prey, claim.square, claim.id}; });
+    claims.erase(std::ranges::unique(claims, {}, &Claim::prey).begin(), claims.end());
+
+    const auto handling_ticks = static_cast<std::uint32_t>(std::ceil(parameters.handling_s / parameters.tick_s - 1e-6));
+    Block block;
+    for (const Claim& claim : claims) {
+        record_death(block, claim.prey, tick, CauseOfDeath::Eaten);
+        const float cap = parameters.health_cap_per_size > 0
+                              ? health_cap(evolution::body_genes(born_.genes, claim.id), parameters)
+                              : std::numeric_limits<float>::infinity();
+        change_health(block, claim.predator, [&](float health) {
+            return std::max(health, std::min(health + static_cast<float>(parameters.prey_health), cap));
+        });
+        count_eaten(block, claim.id, life_records_.food_eaten, food_counts_);
+        living_.hunts_from[claim.predator] = tick + 1 + handling_ticks;
+    }
+    for (const std::uint32_t predator : predators) {
+        if (living_.hunts_from[predator] <= tick + 1) {
+            living_.hunts_from[predator] = 0; // it hunts in the next tick
+        }
+    }
+    eaten_hash_ += block.eaten_hash_change;
+    add_deaths(block);
+    return block.hash;
 }
 
 } // namespace evod::simulation

@@ -68,8 +68,8 @@ void notice(const std::int32_t* x, const std::int32_t* y, const ViewColumns& vie
 }
 
 /// Chooses the forces of organisms. If `predicting` is true, health is not subtracted, and `choices` receives the
-/// choices.
-template <bool predicting>
+/// choices. If `hunting` is true, there are predators.
+template <bool predicting, bool hunting>
 inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                         float* force_x, float* force_y, std::int32_t* choices) {
     for (std::size_t i = begin; i < end; i += lanes) {
@@ -88,8 +88,10 @@ inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::
                      poison_radius = load<Floats>(columns.poison.radius + i);
         const Integers sees_food = food.square <= food_radius * food_radius;
         const Integers sees_poison = poison.square <= poison_radius * poison_radius;
-        const Integers afraid =
-            rules.always_flee ? sees_poison : sees_poison & (~sees_food | (poison.square < food.square));
+        Integers afraid = rules.always_flee ? sees_poison : sees_poison & (~sees_food | (poison.square < food.square));
+        if constexpr (hunting) {
+            afraid |= sees_poison & load<Integers>(columns.is_hunted + i);
+        }
 
         const WordPairs words = philox_pairs(load<Words>(columns.id + i), rules.pair_counter, rules.pair_key);
         const Floats impulse = load<Floats>(columns.impulse + i);
@@ -115,12 +117,20 @@ inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::
 
 void choose(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
             float* force_x, float* force_y) {
-    choose_each<false>(columns, begin, end, rules, force_x, force_y, nullptr);
+    if (columns.is_hunted == nullptr) {
+        choose_each<false, false>(columns, begin, end, rules, force_x, force_y, nullptr);
+    } else {
+        choose_each<false, true>(columns, begin, end, rules, force_x, force_y, nullptr);
+    }
 }
 
 void predict(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
              float* force_x, float* force_y, std::int32_t* choices) {
-    choose_each<true>(columns, begin, end, rules, force_x, force_y, choices);
+    if (columns.is_hunted == nullptr) {
+        choose_each<true, false>(columns, begin, end, rules, force_x, force_y, choices);
+    } else {
+        choose_each<true, true>(columns, begin, end, rules, force_x, force_y, choices);
+    }
 }
 
 /// Updates a view to the present positions. Returns, for each lane, whether the organism may touch items of this kind.

@@ -36,33 +36,6 @@ Coordinate reach_of(float half_size_px, float widest_px) {
     return physics::to_units(half_size_px + widest_px) + 2;
 }
 
-/// Circles already placed; the grid stores their radii.
-class PlacedCircles {
-  public:
-    PlacedCircles(const std::vector<float>& radius, const physics::Area& area)
-        : grid_{area, radius.size()}
-        , widest_px_{radius.empty() ? 0 : *std::max_element(radius.begin(), radius.end())} {}
-
-    void prefetch(Place place, float radius) const { grid_.prefetch(place, reach_of(radius, widest_px_)); }
-
-    bool clear(Place place, float radius) const {
-        return grid_.empty() ||
-               !grid_.any_near(place, reach_of(radius, widest_px_), [&](Place other, float other_radius) {
-                   // Does the same test as physics::circle_circle(), but without depth and normal, which are not needed
-                   // here.
-                   const float dx = physics::distance_px(other.x, place.x), dy = physics::distance_px(other.y, place.y);
-                   const float touch = other_radius + radius;
-                   return dx * dx + dy * dy <= touch * touch;
-               });
-    }
-
-    void add(Place place, float radius) { grid_.add(place, radius); }
-
-  private:
-    PlaceGrid<float> grid_;
-    float widest_px_;
-};
-
 // The circles of a batch search for places in parallel, each clear of the circles of earlier batches. Batches are so
 // small that their circles seldom overlap each other. The size of batches does not affect the result.
 constexpr std::size_t batch_circles_min = 2048, batches = 64;
@@ -76,6 +49,19 @@ struct Attempts {
 };
 
 } // namespace
+
+void PlacedCircles::prefetch(Place place, float radius_px) const {
+    grid_.prefetch(place, reach_of(radius_px, widest_px_));
+}
+
+bool PlacedCircles::clear(Place place, float radius_px) const {
+    return grid_.empty() || !grid_.any_near(place, reach_of(radius_px, widest_px_), [&](Place other, float other_px) {
+        // Does the same test as physics::circle_circle(), but without depth and normal, which are not needed here.
+        const float dx = physics::distance_px(other.x, place.x), dy = physics::distance_px(other.y, place.y);
+        const float touch = other_px + radius_px;
+        return dx * dx + dy * dy <= touch * touch;
+    });
+}
 
 BoxGrid::BoxGrid(const physics::Area& area, const Boxes& boxes) : BoxGrid{area, boxes.size()} {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -149,7 +135,7 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
                                  base::Executor& executor, float margin_px) {
     const std::size_t count = radius_px.size();
     const base::RandomKey key{seed, base::Purpose::OrganismPlacement, island, generation};
-    PlacedCircles placed{radius_px, area};
+    PlacedCircles placed{area, count, count == 0 ? 0 : *std::ranges::max_element(radius_px)};
     std::vector<Place> places(count);
     const std::size_t batch_size = std::max(batch_circles_min, count / batches);
     std::vector<Attempts> attempts(std::min(batch_size, count), Attempts{{key, 0}});

@@ -10,6 +10,7 @@
 #include "server/physics/bodies.h"
 #include "server/simulation/place_grid.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,6 +36,27 @@ class BoxGrid {
     };
     PlaceGrid<HalfSize> grid_;
     float widest_px_ = 0; // greatest half width or half height
+};
+
+/// Circles on an island, in a grid that stores their radii.
+class PlacedCircles {
+  public:
+    /// expected_count  about so many circles will be added.
+    /// widest_px       at most the radius of the widest one; a greater number makes the first searches slower.
+    PlacedCircles(const physics::Area& area, std::size_t expected_count, float widest_px = 0)
+        : grid_{area, expected_count}, widest_px_{widest_px} {}
+
+    void prefetch(Place place, float radius_px) const;
+    /// Returns whether a circle touches none of them.
+    bool clear(Place place, float radius_px) const;
+    void add(Place place, float radius_px) {
+        grid_.add(place, radius_px);
+        widest_px_ = std::max(widest_px_, radius_px);
+    }
+
+  private:
+    PlaceGrid<float> grid_;
+    float widest_px_;
 };
 
 /// Draws a uniform random place for a circle, inside the walls and clear of `boxes`.

@@ -144,21 +144,32 @@ double median(std::span<const double> values) {
 
 } // namespace
 
-GenerationStatistics generation_statistics(const Island& island, const parameters::Parameters& parameters,
-                                           std::span<const double> fitness, base::Executor& executor) {
-    GenerationStatistics s;
-    s.island = island.index();
-    s.organism_count = static_cast<std::uint32_t>(fitness.size());
+namespace {
 
-    const evolution::GeneMatrix& genes = island.born().genes;
+/// Sets the statistics of fitness and genes: those of the organisms [ids.begin, ids.end).
+void add_population(GenerationStatistics& s, const Island& island, base::Range ids,
+                    const parameters::Parameters& parameters, std::span<const double> all_fitness,
+                    base::Executor& executor) {
+    const std::span<const double> fitness = all_fitness.subspan(ids.begin, ids.end - ids.begin);
+    const evolution::GeneMatrix& all_genes = island.born().genes;
+    const bool is_whole = fitness.size() == all_fitness.size();
+    const evolution::GeneMatrix part =
+        is_whole
+            ? evolution::GeneMatrix{}
+            : evolution::GeneMatrix{all_genes.middleCols(static_cast<Eigen::Index>(ids.begin), std::ssize(fitness))};
+    const evolution::GeneMatrix& genes = is_whole ? all_genes : part;
     const auto gene_count = static_cast<std::size_t>(genes.rows());
+    s.genes.assign(gene_count, {});
+    if (fitness.empty()) {
+        return;
+    }
     const bool is_short = gene_count < block_genes;
     const evolution::GeneMatrix longer = is_short ? evolution::with_a_block(genes) : evolution::GeneMatrix{};
     const Population population{fitness, is_short ? longer : genes, executor};
     const Sums mean = population.sums<1>(Sums{population.gene_count()}).over(fitness.size());
     const Sums variance = population.sums<2>(mean).over(fitness.size());
     const Extremes extremes = population.extremes();
-    s.best_organism = extremes.best_organism;
+    s.best_organism = extremes.best_organism + static_cast<std::uint32_t>(ids.begin);
     s.fitness_best = fitness[extremes.best_organism];
     s.fitness_mean = mean.fitness;
     s.fitness_median = median(fitness);
@@ -166,7 +177,6 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
     s.fitness_deviation = std::sqrt(variance.fitness);
 
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
-    s.genes.resize(gene_count);
     for (std::size_t gene = 0; gene < gene_count; ++gene) {
         s.genes[gene] = {.mean = mean.genes[gene],
                          .deviation = std::sqrt(variance.genes[gene]),
@@ -176,7 +186,59 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
                                                bounds.min(static_cast<Eigen::Index>(gene)));
         s.diversity += width > 0 ? s.genes[gene].deviation / width / static_cast<double>(gene_count) : 0;
     }
+}
 
+/// Sets the numbers of lives and deaths of a species of a colony.
+///
+/// tick  the last of the generation.
+void add_lives(GenerationStatistics& s, const Island& island, Species species, std::uint32_t tick, double tick_s) {
+    const ColonyCounts& counts = island.colony_counts()[static_cast<std::size_t>(species)];
+    const LifeRecords& records = island.life_records();
+    ColonyStatistics colony{.first_count = counts.first,
+                            .lowest_count = counts.lowest,
+                            .count_mean = tick == 0 ? 0 : static_cast<double>(counts.living_sum) / tick,
+                            .born_count = counts.born,
+                            .refused_count = counts.refused,
+                            .without_room_count = counts.without_room,
+                            .eaten_count = counts.eaten,
+                            .old_count = counts.old};
+    double children = 0, squares = 0, ages = 0;
+    s.organism_count = 0;
+    s.food_eaten = s.poison_eaten = 0;
+    for (std::uint32_t id = 0; id < records.cause.size(); ++id) {
+        if (island.species_of(id) != species) {
+            continue;
+        }
+        ++s.organism_count;
+        s.food_eaten += records.food_eaten[id];
+        s.poison_eaten += records.poison_eaten[id];
+        if (records.cause[id] != CauseOfDeath::Alive) {
+            ++colony.died_count;
+            const auto own = static_cast<double>(records.children[id]);
+            children += own;
+            squares += own * own;
+            ages += island.age_ticks(id, tick) * tick_s;
+        }
+    }
+    if (colony.died_count > 0) {
+        colony.children_mean = children / colony.died_count;
+        colony.children_variance = squares / colony.died_count - colony.children_mean * colony.children_mean;
+        colony.age_mean_s = ages / colony.died_count;
+    }
+    s.alive_count = counts.living;
+    s.starved_count = counts.starved;
+    s.poisoned_count = counts.poisoned;
+    s.colony = colony;
+}
+
+} // namespace
+
+GenerationStatistics generation_statistics(const Island& island, const parameters::Parameters& parameters,
+                                           std::span<const double> fitness, std::uint32_t tick,
+                                           base::Executor& executor) {
+    GenerationStatistics s;
+    s.island = island.index();
+    s.organism_count = static_cast<std::uint32_t>(fitness.size());
     const LiveStatistics live = island.live_statistics();
     s.alive_count = live.alive_count;
     s.starved_count = live.starved_count;
@@ -187,6 +249,21 @@ GenerationStatistics generation_statistics(const Island& island, const parameter
     s.too_fast_count = island.counts().too_fast_count;
     s.speed_limit_count = island.counts().speed_limit_count;
     s.account = island.born().account;
+    if (!island.is_colony()) {
+        add_population(s, island, {0, fitness.size()}, parameters, fitness, executor);
+        return s;
+    }
+    // In colonies: the organisms with which the generation began.
+    const std::uint32_t predators = island.born().predator_count, prey = island.bred_count() - predators;
+    add_population(s, island, {0, prey}, parameters, fitness, executor);
+    add_lives(s, island, Species::Prey, tick, parameters.tick_s);
+    if (predators > 0 || island.colony_counts()[1].first > 0) {
+        GenerationStatistics& second = s.predators.emplace_back();
+        second.island = s.island;
+        second.account = island.born().predator_account;
+        add_population(second, island, {prey, prey + predators}, parameters, fitness, executor);
+        add_lives(second, island, Species::Predator, tick, parameters.tick_s);
+    }
     return s;
 }
 

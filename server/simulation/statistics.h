@@ -30,7 +30,7 @@ struct GeneStatistics {
 
 /// What only colonies have (colony.h), of one species.
 struct ColonyStatistics {
-    std::uint32_t first_count = 0; // organisms at the beginning of the generation
+    std::uint32_t first_count = 0;  // organisms at the beginning of the generation
     std::uint32_t lowest_count = 0; // fewest living organisms after any tick
     double count_mean = 0;          // living organisms, mean over the ticks
     std::uint32_t born_count = 0, refused_count = 0, without_room_count = 0; // as in ColonyCounts
@@ -160,17 +160,21 @@ void for_each_gene_number(Statistics&& s, const Names& gene_names, Visit&& visit
 
 class Island;
 
-/// Computes the statistics of the generation that has just ended. `fitness` contains the fitness of each organism, by
-/// id.
+/// Computes the statistics of the generation that has just ended. In colonies, those of fitness and genes are about the
+/// organisms with which it began.
+///
+/// fitness  of each organism, by id.
+/// tick     the last of the generation.
 GenerationStatistics generation_statistics(const Island& island, const parameters::Parameters& parameters,
-                                           std::span<const double> fitness, base::Executor& executor);
+                                           std::span<const double> fitness, std::uint32_t tick,
+                                           base::Executor& executor);
 
 struct LiveStatistics {
     std::uint32_t organism_count = 0, alive_count = 0; // organisms born, organisms alive
     double health_mean = 0;                            // mean health of living organisms; 0 if there are none
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint32_t starved_count = 0, poisoned_count = 0;
-    std::uint32_t eaten_count = 0, old_count = 0, born_count = 0; // only in colonies
+    std::uint32_t eaten_count = 0, old_count = 0, born_count = 0, predator_count = 0; // only in colonies
 };
 
 /// Computes LiveStatistics::health_mean.

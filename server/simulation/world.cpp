@@ -109,7 +109,12 @@ World World::restarted(base::Seed seed, const std::optional<evolution::FreeGenes
 }
 
 evolution::Outcome World::outcome() const {
-    return generation_over_ ? evolution::outcome(progress_, parameters_.active()) : evolution::Outcome::Running;
+    if (!generation_over_) {
+        return evolution::Outcome::Running;
+    }
+    // Without prey, a world with births has nothing to continue with.
+    const bool has_ended = parameters::has_births(parameters_.active()) && progress_.last_died_out;
+    return has_ended ? evolution::Outcome::Extinction : evolution::outcome(progress_, parameters_.active());
 }
 
 std::vector<IslandOutcome> World::outcomes() const {
@@ -129,7 +134,8 @@ std::optional<Activations> World::activations(const Island& island, std::uint32_
     if (is_after_last_tick()) {
         return std::nullopt;
     }
-    return island.activations(parameters_.active_in_next_tick(moment_), id);
+    return island.activations(parameters_.active_in_next_tick(moment_),
+                              static_cast<std::uint32_t>(moment_.generation_tick) + 1, id);
 }
 
 std::uint64_t World::alive_count() const {
@@ -169,20 +175,21 @@ void World::breed_next_generation(base::Executor& executor) {
     }
     parameters_.begin_breeding(moment_.generation + 1, events_);
     const parameters::Parameters& p = parameters_.active();
-    std::vector<evolution::MigrationRoute> routes;
+    Routes routes;
     if (evolution::migration_due(moment_.generation, p)) {
-        std::vector<std::uint32_t> populations;
-        for (const IslandSummary& island : islands_->summaries()) {
-            populations.push_back(island.organism_count);
+        routes.prey = routes_of(Species::Prey, p);
+        if (p.predator_count > 0) {
+            routes.predators = routes_of(Species::Predator, parameters::of_predators(p));
         }
-        routes = evolution::plan_migration(populations, p, seed_, moment_.generation);
-        std::erase_if(routes, [](const evolution::MigrationRoute& route) { return route.count == 0; });
     }
-    islands_->breed_next_generation(p, moment_.generation, routes, executor);
+    islands_->breed_next_generation(p, moment_.generation, static_cast<std::uint32_t>(moment_.generation_tick), routes,
+                                    executor);
     if (!routes.empty()) {
         MigrationHappened happened{.generation = moment_.generation, .edges = {}};
-        for (const evolution::MigrationRoute& route : routes) {
-            happened.edges.push_back({route.from, route.to, route.count});
+        for (const auto* of_species : {&routes.prey, &routes.predators}) {
+            for (const evolution::MigrationRoute& route : *of_species) {
+                happened.edges.push_back({route.from, route.to, route.count});
+            }
         }
         events_.emplace_back(std::move(happened));
     }
@@ -190,6 +197,32 @@ void World::breed_next_generation(base::Executor& executor) {
     moment_.generation_tick = 0;
     generation_over_ = false;
     open();
+}
+
+std::vector<evolution::MigrationRoute> World::routes_of(Species species,
+                                                        const parameters::Parameters& parameters) const {
+    std::vector<std::uint32_t> populations;
+    for (const IslandSummary& island : islands_->summaries()) {
+        populations.push_back(island.breeder_counts[static_cast<std::size_t>(species)]);
+    }
+    auto routes = evolution::plan_migration(populations, parameters, seed_, migration_key(moment_.generation, species));
+    std::erase_if(routes, [](const evolution::MigrationRoute& route) { return route.count == 0; });
+    return routes;
+}
+
+bool World::has_died_out() const {
+    const parameters::Parameters& p = parameters_.active();
+    if (!has_bodies() || !parameters::has_births(p)) {
+        return has_bodies() && alive_count() == 0;
+    }
+    std::array<std::uint64_t, 2> living{};
+    for (const IslandSummary& island : islands_->summaries()) {
+        for (std::size_t species = 0; species < living.size(); ++species) {
+            living[species] += island.breeder_counts[species];
+        }
+    }
+    const bool predators_were_there = p.predator_count > 0 && moment_.generation >= p.predator_from;
+    return living[0] == 0 || (p.stop_at_extinction && predators_were_there && living[1] == 0);
 }
 
 void World::advance(std::uint64_t tick, base::Executor& executor) {
@@ -262,6 +295,11 @@ void World::finish_generation(base::Executor& executor) {
         island.generation = moment_.generation;
         island.end_tick = moment_.tick;
         island.simulated_s = static_cast<double>(moment_.generation_tick) * p.tick_s;
+        for (GenerationStatistics& predators : island.predators) {
+            predators.generation = island.generation;
+            predators.end_tick = island.end_tick;
+            predators.simulated_s = island.simulated_s;
+        }
     }
     close_generation(statistics);
     events_.emplace_back(GenerationFinished{std::move(statistics)});
@@ -273,7 +311,7 @@ void World::finish_generation(base::Executor& executor) {
 void World::close_generation(const std::vector<GenerationStatistics>& statistics) {
     generation_over_ = true;
     const double best = std::ranges::max(statistics, {}, &GenerationStatistics::fitness_best).fitness_best;
-    progress_ = evolution::advance(progress_, {.best_fitness = best, .died_out = has_bodies() && alive_count() == 0});
+    progress_ = evolution::advance(progress_, {.best_fitness = best, .died_out = has_died_out()});
     history_.push_back(statistics);
     if (history_.size() > history_generations_kept_of(islands_->size(), evolution::gene_count(parameters_.active()))) {
         history_.pop_front();

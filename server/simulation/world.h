@@ -212,6 +212,10 @@ class World {
     World(const World& original, std::unique_ptr<Islands> islands);
     /// To be called when the islands have begun a generation, at its first moment.
     void open();
+    /// The routes on which organisms of a species migrate now. `parameters` are those of the species.
+    std::vector<evolution::MigrationRoute> routes_of(Species species, const parameters::Parameters& parameters) const;
+    /// Whether every organism has died. With births: whether no prey is left or, with stop_at_extinction, no predator.
+    bool has_died_out() const;
     /// The generation in which a change of parameters is counted now.
     std::uint64_t generation_of_changes() const { return moment_.generation + (is_after_last_tick() ? 1 : 0); }
     /// The last tick of a generation with bodies, unless all organisms die before.

@@ -27,6 +27,7 @@ IslandShape Island::shape() const {
             .organisms = bred_count(),
             .has_bodies = has_bodies(),
             .has_headings = has_bodies() && living_.has_brains(),
+            .is_colony = has_bodies() && is_colony(),
             .crates = has_bodies() ? crate_count_ : 0,
             .food = has_bodies() ? food_.first_count() : 0,
             .poison = has_bodies() ? poison_.first_count() : 0};
@@ -41,8 +42,11 @@ IslandState Island::state(base::Executor& executor) const {
     }
     for (std::uint32_t id = bred_count(); id < life_records_.cause.size(); ++id) {
         const evolution::ConstGenes genes = evolution::column(born_.genes, id);
-        state.placed.push_back({.genes = {genes.begin(), genes.end()}, .tick = placed_tick(id)});
+        state.placed.push_back(
+            {.genes = {genes.begin(), genes.end()}, .tick = placed_tick(id), .parents = parents_of_child(id)});
     }
+    state.colony = colony_;
+    state.latest_born = latest_born_;
     state.placed_food = food_.size() - food_.first_count();
     state.placed_poison = poison_.size() - poison_.first_count();
     for (std::uint32_t i = 0; i < crate_count_; ++i) {
@@ -57,6 +61,7 @@ IslandState Island::state(base::Executor& executor) const {
             } else {
                 state.organisms.resize(body_of_.size());
                 state.headings.resize(living_.has_brains() ? body_of_.size() : 0);
+                state.hunts_from.resize(is_colony() ? body_of_.size() : 0);
             }
         }
     });
@@ -67,6 +72,9 @@ IslandState Island::state(base::Executor& executor) const {
                                                   bodies_.velocity_y[i], living_.health[i]};
                 if (living_.has_brains()) {
                     state.headings[bodies_.id[i]] = living_.heading[i];
+                }
+                if (is_colony()) {
+                    state.hunts_from[bodies_.id[i]] = living_.hunts_from[i];
                 }
             }
         }
@@ -86,8 +94,10 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
     if (life_records.cause.size() != organisms || life_records.lived_ticks.size() != organisms ||
         life_records.food_eaten.size() != organisms || life_records.poison_eaten.size() != organisms ||
         state.organisms.size() != (own.has_bodies ? organisms : 0) ||
-        state.headings.size() != (own.has_headings ? organisms : 0) || state.placed.size() > placed_max ||
-        (!own.has_bodies && !state.placed.empty())) {
+        state.headings.size() != (own.has_headings ? organisms : 0) ||
+        state.hunts_from.size() != (own.is_colony ? organisms : 0) ||
+        life_records.children.size() != (own.is_colony ? organisms : 0) ||
+        (!has_births_ && state.placed.size() > placed_max) || (!own.has_bodies && !state.placed.empty())) {
         return wrong("number of organisms");
     }
     for (const IslandState::Placed& placed : state.placed) {
@@ -97,6 +107,17 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
             !std::ranges::all_of(placed.genes, [](float gene) { return std::isfinite(gene); }) ||
             placed.genes[evolution::BodySize] <= 0 || placed.genes[evolution::BodySize] > body_size_reachable) {
             return wrong("a placed organism");
+        }
+        const auto id = own.organisms + static_cast<std::size_t>(&placed - state.placed.data());
+        if ((placed.parents.first != no_parents.first || placed.parents.second != no_parents.second) &&
+            (!has_births_ || placed.parents.first >= id || placed.parents.second >= id)) {
+            return wrong("the parents of a child");
+        }
+    }
+    for (const std::vector<float>& latest : state.latest_born) {
+        if (latest.size() % static_cast<std::size_t>(born_.genes.rows()) != 0 ||
+            !std::ranges::all_of(latest, [](float gene) { return std::isfinite(gene); })) {
+            return wrong("the latest births");
         }
     }
     if (state.crates.size() != own.crates) {
@@ -136,11 +157,14 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         starved += life_records.cause[id] == CauseOfDeath::Starved;
         poisoned += life_records.cause[id] == CauseOfDeath::Poisoned;
         const bool removed = life_records.cause[id] == CauseOfDeath::Removed;
-        if (!own.has_bodies || life_records.cause[id] > CauseOfDeath::Removed ||
+        if (!own.has_bodies || life_records.cause[id] > CauseOfDeath::Old ||
             (life_records.lived_ticks[id] == 0 && !removed) || life_records.lived_ticks[id] > tick ||
             state.organisms[id] != IslandState::Organism{} || (own.has_headings && state.headings[id] != 0)) {
             return which("death");
         }
+    }
+    if (own.is_colony && state.colony[0].living + state.colony[1].living != alive) {
+        return wrong("number of living organisms");
     }
     if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
         return wrong("number of dead organisms");
@@ -202,10 +226,12 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
     }
     std::vector<NewOrganism> placed; // with the positions that the loop over all organisms sets
     for (const IslandState::Placed& organism : state.placed) {
-        placed.push_back({{}, organism.genes, organism.tick});
+        placed.push_back({{}, organism.genes, organism.tick, organism.parents});
     }
     append(placed, parameters);
     life_records_ = state.life_records;
+    colony_ = state.colony;
+    latest_born_ = state.latest_born;
     for (std::uint32_t i = 0; i < crate_count_; ++i) {
         boxes_.x[i] = state.crates[i].x;
         boxes_.y[i] = state.crates[i].y;
@@ -231,6 +257,9 @@ void Island::restore(const IslandState& state, std::uint32_t tick, const paramet
         living_.health[id] = organism.health;
         if (living_.has_brains()) {
             living_.heading[id] = state.headings[id];
+        }
+        if (is_colony()) {
+            living_.hunts_from[id] = state.hunts_from[id];
         }
     }
     perception_.begin(bodies_, living_, food_, poison_);
@@ -334,6 +363,9 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
         std::vector<GenerationStatistics> ended = state.ended;
         for (std::size_t i = 0; i < ended.size(); ++i) {
             ended[i].account = island(i).born().account; // can be derived from the generation's beginning
+            for (GenerationStatistics& predators : ended[i].predators) {
+                predators.account = island(i).born().predator_account;
+            }
         }
         close_generation(ended);
     }

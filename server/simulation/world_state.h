@@ -41,11 +41,13 @@ struct IslandCounts {
 
 /// What has happened in a colony (colony.h) on the island in this generation so far, per species.
 struct ColonyCounts {
-    std::uint32_t born = 0;            // children
-    std::uint32_t refused = 0;         // births that did not happen, because population_max was reached
-    std::uint32_t without_room = 0;    // births that did not happen, because no place was free
+    std::uint64_t living_sum = 0;                                // living organisms, summed over the ticks
+    std::uint32_t first = 0, lowest = 0;                         // living at the beginning; fewest after any tick
+    std::uint32_t living = 0;                                    // now
+    std::uint32_t born = 0;                                      // children
+    std::uint32_t refused = 0;                                   // births refused, because population_max was reached
+    std::uint32_t without_room = 0;                              // births refused, because no place was free
     std::uint32_t starved = 0, poisoned = 0, eaten = 0, old = 0; // deaths
-    std::uint32_t meals = 0;           // food items or prey eaten
 
     friend bool operator==(const ColonyCounts&, const ColonyCounts&) = default;
 };
@@ -78,7 +80,7 @@ struct IslandState {
     /// An organism that was placed or born in this generation.
     struct Placed {
         std::vector<float> genes;
-        std::uint32_t tick; // it was placed or born after this tick of the generation
+        std::uint32_t tick;                      // it was placed or born after this tick of the generation
         evolution::Parents parents = {~0U, ~0U}; // of a child, the ids of its parents in this generation
         friend bool operator==(const Placed&, const Placed&) = default;
     };
@@ -92,7 +94,7 @@ struct IslandState {
     base::Column<Items::Item> food, poison;
     // The rest only in colonies.
     std::array<ColonyCounts, 2> colony{};          // per species
-    std::vector<std::uint32_t> handling;           // by id: ticks until a predator hunts again
+    std::vector<std::uint32_t> hunts_from;         // by id: tick of the generation; 0 if it handles no prey
     std::array<std::vector<float>, 2> latest_born; // per species, with shuffle_births: the chromosomes of latest births
 
     friend bool operator==(const IslandState&, const IslandState&) = default;

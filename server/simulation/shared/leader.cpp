@@ -51,10 +51,10 @@ class SharedIslands final : public Islands {
         use(parameters);
         return part_.perform(order(EndGeneration{tick, !given.empty()}), executor, given);
     }
-    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation,
-                               std::span<const evolution::MigrationRoute> routes, base::Executor& executor) override {
+    void breed_next_generation(const parameters::Parameters& parameters, std::uint64_t generation, std::uint32_t tick,
+                               const Routes& routes, base::Executor& executor) override {
         use(parameters);
-        if (!part_.perform(order(TurnOver{generation, {routes.begin(), routes.end()}}), executor)) {
+        if (!part_.perform(order(TurnOver{generation, tick, routes}), executor)) {
             throw std::bad_alloc{};
         }
         begun_.generation = generation + 1;

@@ -145,8 +145,11 @@ struct EndGeneration {
 };
 struct TurnOver {
     std::uint64_t generation;
-    std::vector<evolution::MigrationRoute> routes;
-    static void visit(auto& order, auto&& each) { each(order.generation, order.routes); }
+    std::uint32_t tick;
+    Routes routes;
+    static void visit(auto& order, auto&& each) {
+        each(order.generation, order.tick, order.routes.prey, order.routes.predators);
+    }
 };
 struct Place {
     PlaceEntities command;

@@ -189,15 +189,17 @@ std::vector<GenerationStatistics> Part::perform(const EndGeneration& order, base
 }
 
 bool Part::perform(const TurnOver& order, base::Executor& executor) {
-    bool fits = true, migrants_exchanged = order.routes.empty();
+    bool fits = true;
+    int exchanges_left = (order.routes.prey.empty() ? 0 : 1) + (order.routes.predators.empty() ? 0 : 1);
     try {
-        islands_.breed_next_generation(parameters_, order.generation, order.routes, executor,
-                                       [&](std::vector<Migrants>& migrants) {
-                                           carry(order.routes, migrants);
-                                           migrants_exchanged = true;
-                                       });
+        islands_.breed_next_generation(
+            parameters_, order.generation, order.tick, order.routes, executor,
+            [&](std::span<const evolution::MigrationRoute> routes, std::vector<Migrants>& migrants) {
+                carry(routes, migrants);
+                --exchanges_left;
+            });
     } catch (const std::bad_alloc&) {
-        if (!migrants_exchanged) {
+        if (exchanges_left > 0) {
             throw; // the others wait for migrants
         }
         fits = false;

@@ -244,7 +244,7 @@ TEST_F(OneOrganism, DoesWhatIsPredicted) {
         const float health = living.health[0];
         const std::uint32_t asked[] = {0};
         Intention predicted[1];
-        predict_intentions(bodies, living, foods, poisons, rules, key, 5, asked, predicted);
+        predict_intentions(bodies, living, foods, poisons, nullptr, rules, key, 5, asked, predicted);
         EXPECT_EQ(living.health[0], health);
         const Force done = choose(foods, poisons, 5);
         EXPECT_EQ(predicted->choice, choice);
@@ -297,7 +297,7 @@ TEST(Foreseeing, EqualsWhatACrowdThenDoesBitForBit) {
     for (int tick = 0; tick < 40; ++tick) {
         meadow.perceive();
         std::vector<Intention> predicted(asked.size());
-        predict_intentions(meadow.bodies, meadow.living, meadow.food, meadow.poison, meadow.rules, meadow.key,
+        predict_intentions(meadow.bodies, meadow.living, meadow.food, meadow.poison, nullptr, meadow.rules, meadow.key,
                            meadow.tick, asked, predicted);
         std::vector<float> x(meadow.bodies.x.size()), y(x);
         for (std::size_t block = 0; block < physics::block_count(700); ++block) {
