@@ -57,6 +57,33 @@ std::vector<parameters::Parameters> varied_worlds() {
               {"population_size", 1500u},
               {"island_width_px", 8000.0},
               {"generation_s", 3.0}}),
+        with({{"reproduction", std::string{"births"}}, // sexual
+              {"birth_health", 100.0},
+              {"birth_cost", 5.0},
+              {"lifespan_s", 10.0},
+              {"respawn_s", 1.5},
+              {"crate_count", 5u},
+              {"obstacle_count", 5u},
+              {"generation_s", 3.0},
+              {"island_count", 3u},
+              {"migration", std::string{"ring"}},
+              {"migration_epoch", 1u}}),
+        with({{"reproduction", std::string{"births"}}, // two species
+              {"births", std::string{"asexual"}},
+              {"predator_births", std::string{"asexual"}},
+              {"birth_health", 110.0},
+              {"birth_cost", 5.0},
+              {"shuffle_births", true},
+              {"predator_count", 10u},
+              {"predator_from", 2u},
+              {"handling_s", 1.0},
+              {"generation_s", 2.0}}),
+        with({{"predator_count", 12u}, {"handling_s", 2.0}, {"generation_s", 4.0}}),
+        with({{"controller", std::string{"network"}},
+              {"reproduction", std::string{"births"}},
+              {"birth_health", 100.0},
+              {"predator_count", 8u},
+              {"generation_s", 3.0}}),
     };
 }
 
@@ -64,15 +91,11 @@ class WorldStateTest : public testing::Test {
   protected:
     /// A copy of the world at the beginning of its generation, brought to the state.
     base::Result<World> again(const World& world, const WorldState& state, base::Executor& with) {
-        std::vector<evolution::NextGeneration> born;
-        for (const Island& island : world.islands()) {
-            born.push_back(island.born());
-        }
         History history = world.history();
         if (world.generation_over()) {
             history.pop_back();
         }
-        World restored{world.seed(), world.opening(), {std::move(born), {}}, std::move(history), with};
+        World restored{world.seed(), world.opening(), world.bred(), std::move(history), with};
         if (auto done = restored.restore(state, with); !done) {
             return done.error();
         }
