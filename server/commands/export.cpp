@@ -56,9 +56,13 @@ std::optional<replay::OrganismName> organism_named(const std::string& text) {
 /// other.
 Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& options) {
     using replay::RunTable;
-    static const std::map<std::string, RunTable> tables{
-        {"generations", RunTable::Generations}, {"organisms", RunTable::Organisms}, {"lineage", RunTable::Lineage},
-        {"population", RunTable::Population},   {"events", RunTable::Events},       {"notes", RunTable::Notes}};
+    static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
+                                                        {"organisms", RunTable::Organisms},
+                                                        {"lineage", RunTable::Lineage},
+                                                        {"population", RunTable::Population},
+                                                        {"events", RunTable::Events},
+                                                        {"notes", RunTable::Notes},
+                                                        {"births", RunTable::Births}};
     const auto table = tables.find(options.what);
     if (table == tables.end() && options.bundle.empty()) {
         return wrong_option("--what", "a table that evod export --help lists, or --bundle FOLDER instead", "nothing");
@@ -177,8 +181,9 @@ void add_export_command(command_line::Command& app) {
                 "--what", &options.what,
                 "Table to export. generations: statistics; organisms: parents, genes and cause of death of each "
                 "organism; lineage: parents of each organism; population: genes of one generation, as input for "
-                "--population; events: the commands of the run; notes: the notes that users have added")
-            .choices({"generations", "organisms", "lineage", "population", "events", "notes"});
+                "--population; events: the commands of the run; notes: the notes that users have added; births: in a "
+                "world with births, when each organism was born and died, and its parents")
+            .choices({"generations", "organisms", "lineage", "population", "events", "notes", "births"});
     command.add_option(
         "--of", &options.of,
         "Only with --what lineage: export only the organism GENERATION:ISLAND:ORGANISM and its ancestors");

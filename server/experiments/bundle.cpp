@@ -161,11 +161,14 @@ Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
     }
     constexpr auto csv = replay::Table::Format::Csv;
     using replay::RunTable;
-    constexpr std::pair<const char*, RunTable> names[] = {{"generations.csv", RunTable::Generations},
-                                                          {"organisms.csv", RunTable::Organisms},
-                                                          {"lineage.csv", RunTable::Lineage},
-                                                          {"events.csv", RunTable::Events},
-                                                          {"notes.csv", RunTable::Notes}};
+    std::vector<std::pair<const char*, RunTable>> names{{"generations.csv", RunTable::Generations},
+                                                        {"organisms.csv", RunTable::Organisms},
+                                                        {"lineage.csv", RunTable::Lineage},
+                                                        {"events.csv", RunTable::Events},
+                                                        {"notes.csv", RunTable::Notes}};
+    if (parameters::has_births(run.file.identity().parameters)) {
+        names.emplace_back("births.csv", RunTable::Births);
+    }
     for (const auto& [name, table] : names) {
         const replay::WantedTable wanted{.table = table, .format = csv};
         if (auto done =

@@ -14,9 +14,18 @@ std::size_t bytes_of(const std::optional<evolution::SelectionAccount>& account) 
 std::size_t bytes_of(const std::vector<simulation::GenerationStatistics>& rows) {
     std::size_t bytes = 0;
     for (const simulation::GenerationStatistics& row : rows) {
-        bytes += sizeof row + row.genes.size() * sizeof(simulation::GeneStatistics) + bytes_of(row.account);
+        bytes += sizeof row + row.genes.size() * sizeof(simulation::GeneStatistics) + bytes_of(row.account) +
+                 bytes_of(row.predators);
     }
     return bytes;
+}
+
+std::size_t bytes_of(const simulation::IslandOpening& opening) {
+    constexpr std::size_t of_organism = 40; // its state, number, age, children and handling
+    const simulation::IslandState& state = opening.state;
+    return sizeof opening + opening.numbers.size() * of_organism +
+           (state.food.size() + state.poison.size()) * sizeof(simulation::Items::Item) +
+           (state.latest_born[0].size() + state.latest_born[1].size()) * sizeof(float);
 }
 
 } // namespace
@@ -41,7 +50,11 @@ std::size_t bytes_of(const Record& record) {
                               }
                               for (const evolution::NextGeneration& born : begun.born) {
                                   bytes += static_cast<std::size_t>(born.genes.size()) * sizeof(float) +
-                                           born.parents.size() * sizeof(evolution::Parents) + bytes_of(born.account);
+                                           born.parents.size() * sizeof(evolution::Parents) + bytes_of(born.account) +
+                                           bytes_of(born.predator_account);
+                              }
+                              for (const simulation::IslandOpening& opening : begun.openings) {
+                                  bytes += bytes_of(opening);
                               }
                               return bytes;
                           },
@@ -52,7 +65,8 @@ std::size_t bytes_of(const Record& record) {
                                   bytes += small +
                                            outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1) +
                                            outcome.objectives.size() * sizeof(double) +
-                                           outcome.repaired.size() * sizeof(float);
+                                           outcome.repaired.size() * sizeof(float) +
+                                           outcome.births.size() * sizeof(simulation::Birth);
                               }
                               return bytes;
                           },

@@ -59,6 +59,21 @@ Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreedin
     return generation;
 }
 
+/// Removes the predators of all islands: the record is about the prey. Placed prey come after the predators, and then
+/// have the ids that follow those of the other prey.
+void remove_predators(WholeGeneration& parents) {
+    for (std::size_t island = 0; island < parents.begun.born.size(); ++island) {
+        evolution::NextGeneration& born = parents.begun.born[island];
+        run_file::IslandOutcome& outcome = parents.ended->outcomes[island];
+        const auto placed = std::ssize(parents.placed[island]);
+        const Eigen::Index first = born.genes.cols() - placed - born.predator_count;
+        const evolution::GeneMatrix last = born.genes.rightCols(placed);
+        born.genes.conservativeResize(Eigen::NoChange, first + placed);
+        born.genes.rightCols(placed) = last;
+        outcome.fitness.erase(outcome.fitness.begin() + first, outcome.fitness.begin() + first + born.predator_count);
+    }
+}
+
 /// Repeats the migration before the breeding. Returns the migrants that arrived on the island.
 std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const parameters::Parameters& parameters,
                                         base::Seed seed, std::uint32_t island) {
@@ -92,6 +107,10 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
                          const base::StopCheck& stop) {
     if (auto refused = file.other_model()) {
         return *refused;
+    }
+    if (parameters::has_births(file.identity().parameters)) {
+        return refusal(RefusalCode::FailedPrecondition,
+                       "a world with births breeds no generations: its organisms have children while they live");
     }
     const auto generation = generation_of(file, wanted);
     if (!generation) {
@@ -135,6 +154,14 @@ Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, 
         bred.parameters, islands,
         [&](std::size_t island) -> std::span<double> { return parents->ended->outcomes[island].fitness; }, seed,
         *generation, executor);
+    if (bred.parameters.predator_count > 0) {
+        if (!parents->placed[bred.island].empty()) {
+            return refusal(RefusalCode::FailedPrecondition,
+                           "in a world with predators, no record shows how a generation bred in which organisms were "
+                           "placed");
+        }
+        remove_predators(*parents);
+    }
     const auto migrants = migrate(*parents, bred.parameters, seed, bred.island);
     if (stop()) {
         return cancelled_refusal();

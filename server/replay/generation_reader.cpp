@@ -22,18 +22,31 @@ Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
         return cancelled_refusal();
     }
     const bool retained = file_.retention().at_or_before(generation) == generation;
-    auto whole = retained ? read_stored(generation) : simulate(generation);
+    const bool is_stored =
+        !has_births() || (needed_ == Chromosomes::OfBeginning && generation <= file_.generations().last_ended());
+    auto whole = retained && is_stored ? read_stored(generation) : simulate(generation);
     if (!whole) {
         return whole;
     }
-    if (auto added = add_placed(generation, *whole); !added) {
+    if (has_births()) {
+        if (auto added = add_born(generation, *whole); !added) {
+            return added.error();
+        }
+    } else if (auto added = add_placed(generation, *whole); !added) {
         return added.error();
     }
-    if (whole->ended) {
-        bool matches = whole->ended->outcomes.size() == whole->begun.born.size();
-        for (std::size_t i = 0; matches && i < whole->begun.born.size(); ++i) {
-            const evolution::GeneMatrix& genes = whole->begun.born[i].genes;
-            const run_file::IslandOutcome& outcome = whole->ended->outcomes[i];
+    if (auto checked = check_outcome(generation, *whole); !checked) {
+        return checked.error();
+    }
+    return whole;
+}
+
+Result<void> GenerationReader::check_outcome(std::uint64_t generation, const WholeGeneration& whole) {
+    if (whole.ended) {
+        bool matches = whole.ended->outcomes.size() == whole.begun.born.size();
+        for (std::size_t i = 0; matches && i < whole.begun.born.size(); ++i) {
+            const evolution::GeneMatrix& genes = whole.begun.born[i].genes;
+            const run_file::IslandOutcome& outcome = whole.ended->outcomes[i];
             matches = outcome.fitness.size() == static_cast<std::size_t>(genes.cols()) &&
                       (outcome.repaired.empty() || outcome.repaired.size() == static_cast<std::size_t>(genes.size()));
         }
@@ -46,7 +59,50 @@ Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
             return damaged(generation, "has an outcome for another number of organisms");
         }
     }
-    return whole;
+    return {};
+}
+
+Result<void> GenerationReader::add_born(std::uint64_t generation, WholeGeneration& whole) const {
+    std::vector<NextGeneration>& born = whole.begun.born;
+    if (whole.births.empty()) { // it is stored
+        for (const run_file::IslandOutcome& outcome : whole.ended->outcomes) {
+            whole.births.push_back(outcome.births);
+        }
+        whole.births.resize(born.size());
+        for (std::size_t island = 0; island < born.size(); ++island) {
+            evolution::GeneMatrix& genes = born[island].genes;
+            const Eigen::Index bred = genes.cols();
+            genes.conservativeResize(Eigen::NoChange, bred + std::ssize(whole.births[island]));
+            genes.rightCols(genes.cols() - bred).setZero();
+        }
+    }
+    for (std::size_t island = 0; island < born.size(); ++island) {
+        std::vector<std::uint32_t>& ticks = whole.placed.emplace_back();
+        auto id = static_cast<std::uint32_t>(born[island].genes.cols() - std::ssize(whole.births[island]));
+        for (const simulation::Birth& birth : whole.births[island]) {
+            const bool is_placed = birth.parents == simulation::Island::no_parents;
+            if (!is_placed && (birth.parents.first >= id || birth.parents.second >= id)) {
+                return damaged(generation, "has parents that did not exist");
+            }
+            ticks.push_back(birth.tick);
+            ++id;
+        }
+    }
+    return {};
+}
+
+void GenerationReader::add_simulated(WholeGeneration& whole) {
+    const simulation::WorldState state = rerun_->world().state(executor_);
+    for (std::size_t island = 0; island < state.islands.size(); ++island) {
+        std::vector<simulation::Birth>& births = whole.births.emplace_back();
+        evolution::GeneMatrix& genes = whole.begun.born[island].genes;
+        Eigen::Index id = genes.cols();
+        genes.conservativeResize(Eigen::NoChange, id + std::ssize(state.islands[island].placed));
+        for (const simulation::IslandState::Placed& organism : state.islands[island].placed) {
+            std::ranges::copy(organism.genes, genes.col(id++).data());
+            births.push_back({organism.tick, organism.parents});
+        }
+    }
 }
 
 Result<WholeGeneration> GenerationReader::read_stored(std::uint64_t generation) {
@@ -134,13 +190,21 @@ Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
     if (!statistics) {
         return statistics.error();
     }
-    if (statistics->empty()) {
+    const bool has_ended = !statistics->empty();
+    if (!has_ended && !has_births()) {
         return whole;
     }
-    while (!world.generation_over()) {
+    const std::uint64_t last_tick = file_.last_tick();
+    while (!world.generation_over() && (has_ended || world.moment().tick < last_tick)) {
         if (auto done = advance_tick(); !done) {
             return done.error();
         }
+    }
+    if (has_births()) {
+        add_simulated(whole);
+    }
+    if (!has_ended) {
+        return whole;
     }
     whole.ended = run_file::end_of(world);
     if (const auto mismatch =

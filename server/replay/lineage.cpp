@@ -17,33 +17,25 @@ namespace {
 
 using base::Refusal;
 using base::Result;
+using simulation::Species;
 
 /// The data of a generation that lineage needs.
 struct Births {
     std::uint64_t generation = 0;
     parameters::Parameters parameters; // the parameters with which the generation was bred
     struct Island {
-        std::uint32_t organism_count = 0, elite_count = 0, survivor_count = 0;
-        bool initial = false;           // its organisms were not bred
-        std::uint32_t placed_count = 0; // organisms that were placed; they come last
-        std::vector<evolution::Parents> parents;
+        Origins origins;
         std::vector<double> fitness, deciding_fitness; // as in simulation::IslandOutcome
     };
     std::vector<Island> islands;
 };
 
-Births births_of(WholeGeneration whole) {
+Births births_of(const WholeGeneration& whole) {
     const simulation::Opening& opening = whole.begun.opening;
     Births births{opening.moment.generation, opening.parameters.active, {}};
     for (std::size_t i = 0; i < whole.begun.born.size(); ++i) {
-        evolution::NextGeneration& born = whole.begun.born[i];
         births.islands.push_back(
-            {.organism_count = static_cast<std::uint32_t>(born.genes.cols()),
-             .elite_count = born.elite_count,
-             .survivor_count = born.survivor_count,
-             .initial = born.parents.empty(),
-             .placed_count = static_cast<std::uint32_t>(whole.placed[i].size()),
-             .parents = std::move(born.parents),
+            {.origins = origins_of(whole, i),
              .fitness = whole.ended ? whole.ended->outcomes[i].fitness : std::vector<double>{},
              .deciding_fitness = whole.ended ? whole.ended->outcomes[i].deciding_fitness() : std::vector<double>{}});
     }
@@ -52,6 +44,33 @@ Births births_of(WholeGeneration whole) {
 
 using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // indexed by island, then organism
 
+/// Puts the migrants of a species into the places of the organisms that they replace.
+///
+/// parameters  with which the next generation is bred.
+/// fitness     that decides, per island, by id.
+void migrate(Species species, const Births& parents, const parameters::Parameters& parameters,
+             const std::vector<std::vector<double>>& fitness, base::Seed seed,
+             std::vector<std::vector<Place>>& places) {
+    std::vector<std::vector<std::uint32_t>> ids(fitness.size());
+    std::vector<std::vector<double>> of_species(fitness.size());
+    for (std::size_t island = 0; island < fitness.size(); ++island) {
+        const Origins& origins = parents.islands[island].origins;
+        for (std::uint32_t id = 0; id < origins.organism_count(); ++id) {
+            if (origins.species(id) == species) {
+                ids[island].push_back(id);
+                of_species[island].push_back(fitness[island][id]);
+            }
+        }
+    }
+    const bool is_predator = species == Species::Predator;
+    const std::vector<std::span<const double>> spans(of_species.begin(), of_species.end());
+    for (const evolution::Migrant& migrant :
+         choose_migrants(spans, is_predator ? parameters::of_predators(parameters) : parameters, seed,
+                         simulation::migration_key(parents.generation, species))) {
+        places[migrant.to][ids[migrant.to][migrant.replaces]] = {migrant.from, ids[migrant.from][migrant.organism]};
+    }
+}
+
 /// Returns, for every place of the generation `parents`, the organism that lived there when `children` was bred;
 /// nullopt if unknown.
 std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile& file, const Births& parents,
@@ -59,12 +78,14 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
     std::vector<std::vector<Place>> places(parents.islands.size());
     std::vector<std::vector<double>> fitness;
     for (std::uint32_t island = 0; island < parents.islands.size(); ++island) {
-        for (std::uint32_t organism = 0; organism < parents.islands[island].organism_count; ++organism) {
+        for (std::uint32_t organism = 0; organism < parents.islands[island].origins.organism_count(); ++organism) {
             places[island].push_back({island, organism});
         }
         fitness.push_back(parents.islands[island].deciding_fitness);
     }
-    if (parents.islands.size() > 1 && evolution::migration_due(parents.generation, children.parameters)) {
+    // With births, migrants have no parents.
+    if (parents.islands.size() > 1 && !parameters::has_births(children.parameters) &&
+        evolution::migration_due(parents.generation, children.parameters)) {
         if (file.other_model()) {
             return std::nullopt;
         }
@@ -73,10 +94,8 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
         evolution::apply_shuffle(
             children.parameters, fitness.size(), [&](std::size_t i) -> std::span<double> { return fitness[i]; }, seed,
             parents.generation, executor);
-        const std::vector<std::span<const double>> fitness_of_island(fitness.begin(), fitness.end());
-        for (const evolution::Migrant& migrant :
-             choose_migrants(fitness_of_island, children.parameters, seed, parents.generation)) {
-            places[migrant.to][migrant.replaces] = {migrant.from, migrant.organism};
+        for (const Species species : {Species::Prey, Species::Predator}) {
+            migrate(species, parents, children.parameters, fitness, seed, places);
         }
     }
     return places;
@@ -85,14 +104,15 @@ std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile&
 /// Returns whether migrants can be chosen from these organisms: each has a finite fitness.
 bool are_rated(const Births& births) {
     return std::ranges::all_of(births.islands, [](const Births::Island& island) {
-        return island.organism_count >= 1 && island.fitness.size() == island.organism_count &&
+        return island.origins.organism_count() >= 1 && island.fitness.size() == island.origins.organism_count() &&
                std::ranges::all_of(island.fitness, [](double fitness) { return std::isfinite(fitness); });
     });
 }
 
 /// The parents of all organisms in `children`; empty if unknown.
 Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& children, const Births& parents) {
-    if (!are_rated(parents)) {
+    const bool has_births = parameters::has_births(children.parameters);
+    if (!has_births && !are_rated(parents)) {
         return Refusal{.code = base::RefusalCode::DataLoss,
                        .message = file.path() + " is damaged: generation " + std::to_string(children.generation) +
                                   " was bred from organisms without a finite fitness",
@@ -104,7 +124,11 @@ Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& chi
     }
     ParentPlaces found(children.islands.size());
     for (std::size_t island = 0; island < children.islands.size(); ++island) {
-        for (const evolution::Parents& pair : children.islands[island].parents) {
+        for (const evolution::Parents& pair : children.islands[island].origins.parents) {
+            if (pair == simulation::Island::no_parents) { // it has arrived
+                found[island].push_back({nowhere, nowhere});
+                continue;
+            }
             if (island >= places->size() || std::max(pair.first, pair.second) >= (*places)[island].size()) {
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = file.path() + " is damaged: generation " +
@@ -123,21 +147,27 @@ std::vector<Family> families_of(const Births& births, ParentPlaces parents, cons
     std::vector<Family> families;
     for (std::size_t i = 0; i < births.islands.size(); ++i) {
         const Births::Island& island = births.islands[i];
-        const std::size_t counted = next_parents.empty() ? 0 : island.organism_count;
-        families.push_back({.organism_count = island.organism_count,
-                            .parents = parents.empty() ? std::vector<std::array<Place, 2>>{} : std::move(parents[i]),
-                            .initial = island.initial,
-                            .placed_count = island.placed_count,
-                            .elite_count = island.elite_count,
-                            .survivor_count = island.survivor_count,
-                            .fitness = island.fitness,
-                            .child_count = std::vector<std::uint32_t>(counted),
-                            .kept_count = std::vector<std::uint32_t>(counted)});
+        const std::size_t counted = next_parents.empty() ? 0 : island.origins.organism_count();
+        Family& family = families.emplace_back(
+            Family{.origins = island.origins,
+                   .parents = parents.empty() ? std::vector<std::array<Place, 2>>{} : std::move(parents[i]),
+                   .fitness = island.fitness,
+                   .child_count = std::vector<std::uint32_t>(counted),
+                   .kept_count = std::vector<std::uint32_t>(counted)});
+        for (const simulation::Birth& birth : island.origins.births) {
+            if (counted > 0 && !(birth.parents == simulation::Island::no_parents)) {
+                ++family.child_count[birth.parents.first];
+                family.child_count[birth.parents.second] += birth.parents.first != birth.parents.second;
+            }
+        }
     }
     for (std::size_t i = 0; i < next_parents.size(); ++i) {
         for (std::size_t organism = 0; organism < next_parents[i].size(); ++organism) {
             const auto& [first, second] = next_parents[i][organism];
-            const bool kept = organism < next->islands[i].survivor_count;
+            if (first == nowhere) {
+                continue;
+            }
+            const bool kept = next->islands[i].origins.is_kept(organism);
             ++(kept ? families[first.island].kept_count : families[first.island].child_count)[first.organism];
             if (!(second == first)) {
                 ++families[second.island].child_count[second.organism];

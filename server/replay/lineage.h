@@ -7,6 +7,7 @@
 
 #include "server/base/executor.h"
 #include "server/base/stop_check.h"
+#include "server/replay/origins.h"
 #include "server/run_file/run_file.h"
 
 #include <array>
@@ -21,17 +22,19 @@ struct Place {
     friend bool operator==(const Place&, const Place&) = default;
 };
 
+/// In the place of a parent that an organism does not have.
+constexpr Place nowhere{~0U, ~0U};
+
 /// One island's part of a generation. Every vector is indexed by organism.
 struct Family {
-    std::uint32_t organism_count = 0;
-    // In the previous generation; empty if unknown. The organisms that were placed have none: they come last.
+    Origins origins;
+    // Of the organisms at the beginning, in the previous generation; empty if unknown. With births, a survivor is its
+    // own parent, and the parents of children are in their own generation: see origins.
     std::vector<std::array<Place, 2>> parents;
-    bool initial = false;           // the organisms have no parents
-    std::uint32_t placed_count = 0; // organisms that were placed
-    std::uint32_t elite_count = 0, survivor_count = 0;
     std::vector<double> fitness; // empty if the generation has not ended
-    // For each organism: the number of its children in the next generation, and the number of survivors there that are
-    // copies of it. Empty if the next generation has not begun or is unknown.
+    // For each organism: the number of its children in the next generation, or with births in the same one; and the
+    // number of survivors in the next generation that are copies of it, or itself. Empty if the next generation has not
+    // begun or is unknown.
     std::vector<std::uint32_t> child_count, kept_count;
 };
 

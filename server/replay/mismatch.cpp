@@ -54,6 +54,13 @@ std::string text_of(const simulation::IslandCounts& counts) {
 std::string text_of(const evolution::Parents& parents) {
     return std::to_string(parents.first) + " and " + std::to_string(parents.second);
 }
+std::string text_of(const simulation::Birth& birth) {
+    return std::to_string(birth.tick) + ", " + text_of(birth.parents);
+}
+std::string text_of(const simulation::ColonyCounts& counts) {
+    return text_of_numbers(counts.living_sum, counts.first, counts.lowest, counts.living, counts.born, counts.refused,
+                           counts.without_room, counts.starved, counts.poisoned, counts.eaten, counts.old);
+}
 std::string text_of(const base::StateHash& hash) {
     return to_text(hash);
 }
@@ -187,7 +194,16 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
                                      simulated.clamped_count)) {
         return mismatch;
     }
-    return compare_account("the selection account: ", of_island, stored.account, simulated.account, gene_names);
+    if (auto mismatch =
+            compare_part("the number of predators" + of_island, stored.predator_count, simulated.predator_count)) {
+        return mismatch;
+    }
+    if (auto mismatch =
+            compare_account("the selection account: ", of_island, stored.account, simulated.account, gene_names)) {
+        return mismatch;
+    }
+    return compare_account("the selection account of predators: ", of_island, stored.predator_account,
+                           simulated.predator_account, gene_names);
 }
 
 Found compare_island(const std::string& of_island, const std::vector<std::uint32_t>& stored,
@@ -220,7 +236,29 @@ Found compare_island(const std::string& of_island, const run_file::IslandOutcome
             compare_organisms<std::uint32_t>("the ticks lived", of_island, stored.lived_ticks, simulated.lived_ticks)) {
         return mismatch;
     }
-    return compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, stored.cause, simulated.cause);
+    if (auto mismatch = compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, stored.cause,
+                                                                    simulated.cause)) {
+        return mismatch;
+    }
+    return compare_each<simulation::Birth>("the tick and the parents of birth", of_island, stored.births,
+                                           simulated.births);
+}
+
+Found compare_colony(const std::string& of_island, const simulation::ColonyStatistics& stored,
+                     const simulation::ColonyStatistics& simulated) {
+    std::vector<std::string> again;
+    simulation::for_each_colony_number(simulated,
+                                       [&](const std::string&, const auto& value) { again.push_back(text_of(value)); });
+    Found mismatch;
+    auto simulated_text = again.begin();
+    simulation::for_each_colony_number(stored, [&](const std::string& name, const auto& value) {
+        const std::string text = text_of(value);
+        if (!mismatch && text != *simulated_text) {
+            mismatch = Mismatch{"the statistics of the colony: " + name + of_island, text, *simulated_text};
+        }
+        ++simulated_text;
+    });
+    return mismatch;
 }
 
 Found compare_island(const std::string& of_island, const simulation::GenerationStatistics& stored,
@@ -245,8 +283,25 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
         }
         ++simulated_text;
     });
-    return mismatch ? mismatch
-                    : compare_account("the statistics: ", of_island, stored.account, simulated.account, gene_names);
+    if (!mismatch) {
+        mismatch = compare_account("the statistics: ", of_island, stored.account, simulated.account, gene_names);
+    }
+    if (!mismatch) {
+        mismatch = compare_part("whether there are statistics of a colony" + of_island, stored.colony.has_value(),
+                                simulated.colony.has_value());
+    }
+    if (!mismatch && stored.colony) {
+        mismatch = compare_colony(of_island, *stored.colony, *simulated.colony);
+    }
+    if (!mismatch) {
+        mismatch = compare_part("whether there are statistics of predators" + of_island, !stored.predators.empty(),
+                                !simulated.predators.empty());
+    }
+    if (!mismatch && !stored.predators.empty()) {
+        mismatch = compare_island(of_island + ", of predators", stored.predators.front(), simulated.predators.front(),
+                                  gene_names);
+    }
+    return mismatch;
 }
 
 Found compare_island(const std::string& of_island, const IslandState& stored, const IslandState& simulated) {
@@ -294,10 +349,44 @@ Found compare_island(const std::string& of_island, const IslandState& stored, co
         };
         return Mismatch{"the placed entities" + of_island, text(stored), text(simulated)};
     }
-    if (stored.counts == simulated.counts) {
-        return std::nullopt;
+    if (auto mismatch = compare_part("the counts" + of_island, stored.counts, simulated.counts)) {
+        return mismatch;
     }
-    return Mismatch{"the counts" + of_island, text_of(stored.counts), text_of(simulated.counts)};
+    for (std::size_t species = 0; species < stored.colony.size(); ++species) {
+        if (auto mismatch =
+                compare_part("the counts of " + std::string{species == 0 ? "prey" : "predators"} + of_island,
+                             stored.colony[species], simulated.colony[species])) {
+            return mismatch;
+        }
+        if (auto mismatch = compare_each<float>("the latest births: gene", of_island, stored.latest_born[species],
+                                                simulated.latest_born[species])) {
+            return mismatch;
+        }
+    }
+    if (auto mismatch =
+            compare_organisms<std::uint32_t>("the children", of_island, records.children, new_records.children)) {
+        return mismatch;
+    }
+    return compare_organisms<std::uint32_t>("the handling of a meal", of_island, stored.hunts_from,
+                                            simulated.hunts_from);
+}
+
+Found compare_island(const std::string& of_island, const simulation::IslandOpening& stored,
+                     const simulation::IslandOpening& simulated) {
+    if (auto mismatch =
+            compare_part("the number of predators" + of_island, stored.predator_count, simulated.predator_count)) {
+        return mismatch;
+    }
+    if (auto mismatch = compare_part("the next number" + of_island, stored.next_number, simulated.next_number)) {
+        return mismatch;
+    }
+    if (auto mismatch = compare_organisms<std::uint32_t>("the number", of_island, stored.numbers, simulated.numbers)) {
+        return mismatch;
+    }
+    if (auto mismatch = compare_organisms<std::uint32_t>("the age", of_island, stored.age_ticks, simulated.age_ticks)) {
+        return mismatch;
+    }
+    return compare_island(of_island, stored.state, simulated.state);
 }
 
 /// gene_names  for compare_island(), if it needs them.
@@ -362,6 +451,11 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
 Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated,
               GeneNames gene_names) {
     return compare_islands(stored, simulated, gene_names);
+}
+
+Found compare(const std::vector<simulation::IslandOpening>& stored,
+              const std::vector<simulation::IslandOpening>& simulated) {
+    return compare_islands(stored, simulated);
 }
 
 Found compare(const simulation::Founders& stored, const simulation::Founders& simulated) {

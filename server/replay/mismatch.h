@@ -26,6 +26,8 @@ std::optional<Mismatch> compare(const simulation::Opening& stored, const simulat
 std::optional<Mismatch> compare(const std::vector<evolution::NextGeneration>& stored,
                                 const std::vector<evolution::NextGeneration>& simulated,
                                 std::span<const std::string> gene_names = {});
+std::optional<Mismatch> compare(const std::vector<simulation::IslandOpening>& stored,
+                                const std::vector<simulation::IslandOpening>& simulated);
 std::optional<Mismatch> compare(const simulation::Founders& stored, const simulation::Founders& simulated);
 std::optional<Mismatch> compare(const std::vector<run_file::IslandOutcome>& stored,
                                 const std::vector<run_file::IslandOutcome>& simulated);

@@ -5,6 +5,7 @@
 #include "server/replay/past_changes.h"
 #include "server/run_file/checkpoint.h"
 #include "server/simulation/entities.h"
+#include "server/simulation/opening_check.h"
 #include "server/simulation/rating.h"
 
 #include <algorithm>
@@ -85,9 +86,15 @@ std::uint64_t last_entry_before(const run_file::RunFile& file, const run_file::G
 }
 
 /// Returns whether the chromosomes of an island can be those of organisms that live there.
-bool are_possible(const evolution::GeneMatrix& genes, parameters::Parameters parameters) {
-    if (genes.cols() != static_cast<Eigen::Index>(parameters.population_size)) {
+///
+/// is_opened  whether the interval begins with an opening, which decides how many organisms there are.
+bool are_possible(const evolution::NextGeneration& island, bool is_opened, parameters::Parameters parameters) {
+    const evolution::GeneMatrix& genes = island.genes;
+    if (!is_opened && genes.cols() != static_cast<Eigen::Index>(parameters.population_size) + island.predator_count) {
         return false;
+    }
+    if (genes.cols() == 0) {
+        return is_opened;
     }
     constexpr float greatest = 1e12f;               // no parameter and no list of free genes allows a gene beyond it
     if (!(genes.array().abs() <= greatest).all()) { // a NaN fails each comparison
@@ -126,9 +133,18 @@ const char* impossible_part_of(const run_file::GenerationBegun& begun) {
         !is_valid_from(base::Effect::NextGeneration)) {
         return "parameters";
     }
-    const bool possible = std::ranges::all_of(
-        begun.born, [&](const evolution::NextGeneration& island) { return are_possible(island.genes, set.active); });
-    return possible ? nullptr : "population";
+    const bool possible = std::ranges::all_of(begun.born, [&](const evolution::NextGeneration& island) {
+        return are_possible(island, !begun.openings.empty(), set.active);
+    });
+    if (!possible) {
+        return "population";
+    }
+    for (std::size_t i = 0; i < begun.openings.size(); ++i) {
+        if (const char* fault = simulation::fault_of(begun.openings[i], begun.born[i], set.active)) {
+            return fault;
+        }
+    }
+    return nullptr;
 }
 
 /// Adds the changes of these journal entries.
@@ -335,7 +351,7 @@ Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::Generat
         return damaged(file, "generation " + std::to_string(begun.opening.moment.generation) +
                                  " begins with an impossible " + part);
     }
-    simulation::World world{file.identity().seed,    begun.opening, {begun.born, begun.founders},
+    simulation::World world{file.identity().seed,    begun.opening, begun.bred(),
                             std::move(history),      executor,      file.identity().first_population,
                             file.identity().schedule};
     world.set_past_changes(std::move(past));

@@ -1,6 +1,7 @@
 #include "server/replay/run_tables.h"
 
 #include "evod/v1/commands.pb.h"
+#include "server/replay/birth_table.h"
 #include "server/replay/columns.h"
 #include "server/replay/exported_file.h"
 #include "server/replay/generation_reader.h"
@@ -47,19 +48,17 @@ Result<void> for_each_generation(const RunSource& run, const std::ostream& out, 
     return {};
 }
 
-/// bred  number of organisms that were not placed.
-const char* origin_of(bool initial, std::size_t organism, std::size_t bred, std::uint32_t elite,
-                      std::uint32_t survivors) {
-    if (organism >= bred) {
-        return "placed";
+/// Tables of organisms have a further column in colonies.
+void add_species_column(const RunSource& run, std::vector<std::string>& columns) {
+    if (simulation::is_colony(run.file.identity().parameters)) {
+        columns.emplace_back("species");
     }
-    if (initial) {
-        return "initial";
+}
+void write_species(Table& table, const parameters::Parameters& parameters, const Origins& origins,
+                   std::size_t organism) {
+    if (simulation::is_colony(parameters)) {
+        table.text(species_name(origins.species(organism)));
     }
-    if (organism < elite) {
-        return "elite";
-    }
-    return organism < survivors ? "survivor" : "child";
 }
 
 /// The results of one island in a generation that has ended.
@@ -69,19 +68,19 @@ struct EndedIsland {
 };
 /// placed  WholeGeneration::placed of the organism's island.
 /// ended   results of the organism's island; nullopt before the end of the generation.
-void write_organism(Table& table, const codec::GeneTexts& texts, const evolution::NextGeneration& born,
-                    std::span<const std::uint32_t> placed, std::size_t organism,
+void write_organism(Table& table, const codec::GeneTexts& texts, const evolution::GeneMatrix& genes,
+                    const Origins& origins, std::span<const std::uint32_t> placed, std::size_t organism,
                     const parameters::Parameters& parameters, const std::optional<EndedIsland>& ended) {
     const double tick_s = parameters.tick_s;
-    const std::size_t bred = static_cast<std::size_t>(born.genes.cols()) - placed.size();
-    if (organism >= born.parents.size()) {
-        table.nothing().nothing();
+    const std::size_t bred = origins.bred_count;
+    if (const auto parents = origins.parents_of(organism)) {
+        table.number(parents->first).number(parents->second);
     } else {
-        table.number(born.parents[organism].first).number(born.parents[organism].second);
+        table.nothing().nothing();
     }
-    table.text(origin_of(born.parents.empty(), organism, bred, born.elite_count, born.survivor_count));
+    table.text(origins.origin(organism));
     std::size_t gene = 0;
-    for (const float value : evolution::column(born.genes, static_cast<std::uint32_t>(organism))) {
+    for (const float value : evolution::column(genes, static_cast<std::uint32_t>(organism))) {
         write_gene(table, texts, gene++, value);
     }
     if (ended) {
@@ -105,6 +104,7 @@ void write_organism(Table& table, const codec::GeneTexts& texts, const evolution
             table.nothing();
         }
     }
+    write_species(table, parameters, origins, organism);
     table.end_row();
 }
 
@@ -134,7 +134,7 @@ std::optional<base::Violation> wrong_place(const OrganismName& name, const std::
         return base::Violation{"of.island", "an island from 0 to " + std::to_string(families.size() - 1),
                                std::to_string(name.island)};
     }
-    const std::uint32_t count = families[name.island].organism_count;
+    const std::size_t count = families[name.island].origins.organism_count();
     if (name.organism >= count) {
         return base::Violation{"of.organism", "an organism from 0 to " + std::to_string(count - 1),
                                std::to_string(name.organism)};
@@ -145,23 +145,41 @@ std::optional<base::Violation> wrong_place(const OrganismName& name, const std::
 /// A flag for each organism of each island: whether the organism is requested.
 using Wanted = std::vector<std::vector<bool>>;
 
-void write_families(Table& table, std::uint64_t generation, const std::vector<Family>& families, const Wanted* wanted) {
+/// The parents of an organism that was born during its interval.
+std::optional<evolution::Parents> parents_within(const Family& family, std::size_t organism) {
+    return organism < family.origins.bred_count ? std::nullopt : family.origins.parents_of(organism);
+}
+
+void write_parents(Table& table, std::uint64_t generation, std::size_t island, const Family& family,
+                   std::size_t organism) {
+    if (const auto within = parents_within(family, organism)) {
+        table.number(generation).number(island).number(within->first);
+        table.number(generation).number(island).number(within->second);
+        return;
+    }
+    const bool is_known = organism < family.parents.size() && family.parents[organism].front() != nowhere;
+    for (std::size_t parent = 0; parent < 2; ++parent) {
+        if (is_known) {
+            const Place& place = family.parents[organism][parent];
+            table.number(generation - 1).number(place.island).number(place.organism);
+        } else {
+            table.nothing().nothing().nothing();
+        }
+    }
+}
+
+void write_families(Table& table, std::uint64_t generation, const std::vector<Family>& families, const Wanted* wanted,
+                    bool with_species) {
     for (std::size_t island = 0; island < families.size(); ++island) {
         const Family& family = families[island];
-        for (std::size_t organism = 0; organism < family.organism_count && table.can_write(); ++organism) {
+        const std::size_t organisms = family.origins.organism_count();
+        for (std::size_t organism = 0; organism < organisms && table.can_write(); ++organism) {
             if (wanted != nullptr && !(*wanted)[island][organism]) {
                 continue;
             }
             table.number(generation).number(island).number(organism);
-            if (organism >= family.parents.size()) {
-                table.nothing().nothing().nothing().nothing().nothing().nothing();
-            } else {
-                for (const Place& parent : family.parents[organism]) {
-                    table.number(generation - 1).number(parent.island).number(parent.organism);
-                }
-            }
-            table.text(origin_of(family.initial, organism, family.organism_count - family.placed_count,
-                                 family.elite_count, family.survivor_count));
+            write_parents(table, generation, island, family, organism);
+            table.text(family.origins.origin(organism));
             if (family.fitness.empty()) {
                 table.nothing();
             } else {
@@ -172,7 +190,23 @@ void write_families(Table& table, std::uint64_t generation, const std::vector<Fa
             } else {
                 table.number(family.child_count[organism]).number(family.kept_count[organism]);
             }
+            if (with_species) {
+                table.text(species_name(family.origins.species(organism)));
+            }
             table.end_row();
+        }
+    }
+}
+
+/// Adds the ancestors of the requested organisms that lived in the same interval. Parents have lower ids.
+void add_ancestors_within(Wanted& wanted, const std::vector<Family>& families) {
+    for (std::size_t island = 0; island < families.size(); ++island) {
+        const Family& family = families[island];
+        for (std::size_t organism = wanted[island].size(); organism-- > family.origins.bred_count;) {
+            const auto parents = parents_within(family, organism);
+            if (wanted[island][organism] && parents) {
+                wanted[island][parents->first] = wanted[island][parents->second] = true;
+            }
         }
     }
 }
@@ -186,6 +220,9 @@ Wanted parents_of(const Wanted& wanted, const std::vector<Family>& families) {
                 continue;
             }
             for (const Place& parent : families[island].parents[organism]) {
+                if (parent == nowhere) {
+                    continue;
+                }
                 parents.resize(std::max<std::size_t>(parents.size(), parent.island + 1));
                 std::vector<bool>& there = parents[parent.island];
                 there.resize(std::max<std::size_t>(there.size(), parent.organism + 1));
@@ -226,28 +263,30 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
     for (std::uint32_t objective = 2; objective <= run.file.identity().parameters.objectives; ++objective) {
         columns.push_back("objective" + std::to_string(objective));
     }
+    add_species_column(run, columns);
     Table table{out, format, std::move(columns)};
     const codec::GeneTexts texts = gene_texts_of(run.file.identity().parameters);
-    GenerationReader reader{run.file, run.executor, run.stop};
+    GenerationReader reader{run.file, run.executor, run.stop, Chromosomes::OfAll};
     return for_each_generation(run, out, [&](std::uint64_t generation) -> Result<void> {
-        if (!can_be_read(run.file, generation)) {
+        if (!can_be_read(run.file, generation, Chromosomes::OfAll)) {
             return {};
         }
         const auto whole = reader.read(generation);
         if (!whole) {
             return whole.error();
         }
-        const auto& [begun, ended, placed] = *whole;
+        const auto& [begun, ended, placed, births] = *whole;
         for (std::size_t i = 0; i < begun.born.size(); ++i) {
-            const evolution::NextGeneration& born = begun.born[i];
+            const evolution::GeneMatrix& genes = begun.born[i].genes;
+            const Origins origins = origins_of(*whole, i);
             std::optional<EndedIsland> island;
             if (ended) {
                 island.emplace(EndedIsland{ended->outcomes[i], ended->statistics[i]});
             }
-            for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()) && table.can_write();
-                 ++organism) {
+            for (std::size_t organism = 0; organism < origins.organism_count() && table.can_write(); ++organism) {
                 table.number(generation).number(i).number(organism);
-                write_organism(table, texts, born, placed[i], organism, begun.opening.parameters.active, island);
+                write_organism(table, texts, genes, origins, placed[i], organism, begun.opening.parameters.active,
+                               island);
             }
         }
         return {};
@@ -256,11 +295,22 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
 
 Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Format format,
                            const std::optional<OrganismName>& of, std::uint64_t first_generation) {
-    Table table{out,
-                format,
-                {"generation", "island", "organism", "parent_first_generation", "parent_first_island", "parent_first",
-                 "parent_second_generation", "parent_second_island", "parent_second", "origin", "fitness",
-                 "child_count", "kept_count"}};
+    std::vector<std::string> columns{"generation",
+                                     "island",
+                                     "organism",
+                                     "parent_first_generation",
+                                     "parent_first_island",
+                                     "parent_first",
+                                     "parent_second_generation",
+                                     "parent_second_island",
+                                     "parent_second",
+                                     "origin",
+                                     "fitness",
+                                     "child_count",
+                                     "kept_count"};
+    add_species_column(run, columns);
+    Table table{out, format, std::move(columns)};
+    const bool with_species = simulation::is_colony(run.file.identity().parameters);
     const std::uint64_t first = run.file.identity().first_generation, last = run.file.generations().last();
     if (first_generation > last) {
         return not_found_refusal(
@@ -270,7 +320,7 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
         return each_generation(
             run.file, run.executor, run.stop,
             [&](std::uint64_t generation, const auto& families) {
-                write_families(table, generation, families, nullptr);
+                write_families(table, generation, families, nullptr, with_species);
                 return out.good();
             },
             first_generation);
@@ -285,28 +335,29 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
     }
     std::optional<base::Violation> wrong;
     Wanted wanted;
-    const auto done = each_generation_back_from(run.file, of->generation, run.executor, run.stop,
-                                                [&](std::uint64_t generation, const auto& families) {
-                                                    if (generation < first_generation) {
-                                                        return false;
-                                                    }
-                                                    if (generation == of->generation) {
-                                                        wrong = wrong_place(*of, families);
-                                                        if (wrong) {
-                                                            return false;
-                                                        }
-                                                        wanted.resize(of->island + 1);
-                                                        wanted[of->island].resize(of->organism + 1);
-                                                        wanted[of->island][of->organism] = true;
-                                                    }
-                                                    wanted.resize(families.size());
-                                                    for (std::size_t island = 0; island < families.size(); ++island) {
-                                                        wanted[island].resize(families[island].organism_count);
-                                                    }
-                                                    write_families(table, generation, families, &wanted);
-                                                    wanted = parents_of(wanted, families);
-                                                    return !wanted.empty() && out.good();
-                                                });
+    const auto done = each_generation_back_from(
+        run.file, of->generation, run.executor, run.stop, [&](std::uint64_t generation, const auto& families) {
+            if (generation < first_generation) {
+                return false;
+            }
+            if (generation == of->generation) {
+                wrong = wrong_place(*of, families);
+                if (wrong) {
+                    return false;
+                }
+                wanted.resize(of->island + 1);
+                wanted[of->island].resize(of->organism + 1);
+                wanted[of->island][of->organism] = true;
+            }
+            wanted.resize(families.size());
+            for (std::size_t island = 0; island < families.size(); ++island) {
+                wanted[island].resize(families[island].origins.organism_count());
+            }
+            add_ancestors_within(wanted, families);
+            write_families(table, generation, families, &wanted, with_species);
+            wanted = parents_of(wanted, families);
+            return !wanted.empty() && out.good();
+        });
     if (wrong) {
         return not_found_refusal(*wrong);
     }
@@ -331,8 +382,9 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
     }
     std::vector<evolution::GeneMatrix> population;
     for (std::size_t i = 0; i < whole->begun.born.size(); ++i) {
-        const evolution::GeneMatrix& genes = whole->begun.born[i].genes;
-        population.push_back(genes.leftCols(genes.cols() - std::ssize(whole->placed[i])));
+        const evolution::NextGeneration& born = whole->begun.born[i];
+        population.push_back(
+            born.genes.leftCols(born.genes.cols() - std::ssize(whole->placed[i]) - born.predator_count));
     }
     write_population(population, run.file.identity().parameters, format, out);
     return {};
@@ -463,6 +515,8 @@ Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::o
         return write_events(run, out, wanted.format, wanted.only_users);
     case RunTable::Notes:
         return write_notes(run, out, wanted.format);
+    case RunTable::Births:
+        return write_births(run, out, wanted.format);
     case RunTable::File:
         break;
     }

@@ -3,9 +3,11 @@
 //   generations  statistics, one row per generation and island, as `evod run --csv` writes them
 //   organisms    one row per organism: parents, genes, fitness, death
 //   lineage      one row per organism: its parents with their islands, and the number of its children
-//   population   one row per organism of one generation: its genes. Another world can begin with this table.
+//   population   one row per organism of one generation, without predators: its genes. Another world can begin with
+//                this table.
 //   events       the journal: one row per applied command
 //   notes        one row per note in the journal
+//   births       one row per organism of a world with births: its birth, its death and its parents
 //   file         not a table: the bytes of a copy of the run file (exported_file.h)
 //
 // Rows are written generation by generation. Generations that are not retained are simulated again.
@@ -21,7 +23,7 @@
 
 namespace evod::replay {
 
-enum class RunTable { Generations, Organisms, Lineage, Population, Events, Notes, File };
+enum class RunTable { Generations, Organisms, Lineage, Population, Events, Notes, File, Births };
 
 /// An organism, identified by the generation and island in which it was born, and by its id there.
 struct OrganismName {

@@ -26,6 +26,7 @@ struct StoredGeneration {
     simulation::Opening opening;
     std::vector<NextGeneration> born;
     simulation::Founders founders; // empty: unknown
+    std::vector<simulation::IslandOpening> openings;
     std::vector<run_file::IslandOutcome> outcomes;
     std::vector<simulation::GenerationStatistics> statistics;
     std::vector<run_file::HashRecord> hashes;
@@ -42,7 +43,9 @@ bool can_be_simulated(const StoredGeneration& generation) {
     const parameters::Parameters& parameters = generation.opening.parameters.active;
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
     return std::ranges::all_of(generation.born, [&](const NextGeneration& born) {
-        return born.genes.cols() == parameters.population_size && born.genes.rows() == bounds.min.rows() &&
+        const bool fits = !generation.openings.empty() ||
+                          born.genes.cols() == Eigen::Index{parameters.population_size} + born.predator_count;
+        return fits && born.genes.rows() == bounds.min.rows() &&
                ((born.genes.colwise() - bounds.min >= 0) && (born.genes.colwise() - bounds.max <= 0)).all();
     });
 }
@@ -68,8 +71,10 @@ class StretchCheck {
         if (done_.difference) {
             return done_;
         }
-        auto rerun = Rerun::from(file_, {.opening = first.opening, .born = first.born, .founders = first.founders},
-                                 beginning(), changes, {}, executor_);
+        auto rerun = Rerun::from(
+            file_,
+            {.opening = first.opening, .born = first.born, .founders = first.founders, .openings = first.openings},
+            beginning(), changes, {}, executor_);
         if (!rerun) {
             return rerun.error();
         }
@@ -105,6 +110,7 @@ class StretchCheck {
     bool check_births(const StoredMoment& moment, const StoredGeneration& stored,
                       const run_file::GenerationBegun& simulated) {
         return same(moment, compare(stored.born, simulated.born, gene_names_)) &&
+               same(moment, compare(stored.openings, simulated.openings)) &&
                (stored.founders.empty() || same(moment, compare(stored.founders, simulated.founders)));
     }
     void agrees_with_beginning_of(const StoredGeneration& generation) {
@@ -334,6 +340,7 @@ class Reader {
             generation.opening = (*begun)->opening;
             generation.born = std::move((*begun)->born);
             generation.founders = std::move((*begun)->founders);
+            generation.openings = std::move((*begun)->openings);
         } else {
             const auto opening = file_.generations().opening_of(number);
             if (!opening) {

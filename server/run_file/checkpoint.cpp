@@ -9,6 +9,10 @@
 #include <utility>
 
 namespace evod::run_file {
+
+using base::RefusalCode;
+using base::Result;
+
 namespace {
 
 constexpr int compression_level = 1; // higher levels take much longer and save little: most values are positions
@@ -61,6 +65,14 @@ std::string pack(const simulation::WorldState& state) {
     return std::move(compressor).finish();
 }
 
+std::string pack(const simulation::IslandOpening& opening) {
+    const std::string bytes = simulation::bytes_of_opening(opening);
+    Compressor compressor;
+    compressor.expect(bytes.size());
+    compressor.add(bytes);
+    return std::move(compressor).finish();
+}
+
 StoredCheckpoint pack(const Checkpoint& checkpoint) {
     return {.moment = checkpoint.state.moment,
             .parameters = checkpoint.state.parameters,
@@ -69,20 +81,58 @@ StoredCheckpoint pack(const Checkpoint& checkpoint) {
             .state = pack(checkpoint.state)};
 }
 
-base::Result<void> unpack(std::string_view packed, std::span<const simulation::IslandShape> shapes,
-                          simulation::WorldState& state) {
+namespace {
+
+Result<std::string> decompress(std::string_view packed, std::size_t bytes) {
+    std::string columns(bytes, '\0');
+    const std::size_t unpacked = ZSTD_decompress(columns.data(), columns.size(), packed.data(), packed.size());
+    if (ZSTD_isError(unpacked) || unpacked != columns.size()) {
+        return refusal(RefusalCode::DataLoss, "it cannot be decompressed");
+    }
+    return columns;
+}
+
+/// Refuses a number of bytes that no packed part of a colony has. Positions and genes differ, so zstd compresses them
+/// to no less than a few bytes each.
+Result<void> check_ratio(std::string_view packed, std::size_t bytes) {
+    constexpr std::size_t small = 1 << 20, ratio_max = 256;
+    if (bytes > small && bytes / ratio_max > packed.size()) {
+        return refusal(RefusalCode::DataLoss, "it contains more than organisms of a colony can need");
+    }
+    return {};
+}
+
+} // namespace
+
+Result<void> unpack(std::string_view packed, std::span<const simulation::IslandShape> shapes,
+                    simulation::WorldState& state) {
     // The size is checked before any memory is allocated.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
     if (auto checked = simulation::check_state_size(bytes, shapes); !checked) {
         return checked;
     }
-    std::string columns(bytes, '\0');
-    const std::size_t unpacked = ZSTD_decompress(columns.data(), columns.size(), packed.data(), packed.size());
-    if (ZSTD_isError(unpacked) || unpacked != columns.size()) {
-        return base::Refusal{
-            .code = base::RefusalCode::DataLoss, .message = "it cannot be decompressed", .violations = {}};
+    if (!shapes.empty() && shapes.front().is_colony) {
+        if (auto checked = check_ratio(packed, bytes); !checked) {
+            return checked;
+        }
     }
-    return read_state(columns, shapes, state);
+    const auto columns = decompress(packed, bytes);
+    if (!columns) {
+        return columns.error();
+    }
+    return read_state(*columns, shapes, state);
+}
+
+Result<simulation::IslandOpening> unpack_opening(std::string_view packed) {
+    const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
+    if (auto checked = check_ratio(packed, bytes); !checked) {
+        return checked.error();
+    }
+    const auto columns = decompress(packed, bytes);
+    if (!columns) {
+        return columns.error();
+    }
+    return simulation::read_opening(*columns);
 }
 
 } // namespace evod::run_file

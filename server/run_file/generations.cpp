@@ -1,5 +1,6 @@
 #include "server/run_file/generations.h"
 
+#include "server/run_file/more_genes.h"
 #include "server/run_file/rows.h"
 #include "server/run_file/schema.h"
 
@@ -21,48 +22,6 @@ std::vector<std::int64_t> value_of(std::uint64_t generation) {
 
 std::string more_genes_text(std::uint64_t generation) {
     return "a row of the further genes of generation " + std::to_string(generation);
-}
-
-/// Returns the row for the genes that are not body genes.
-///
-/// first  the first of these genes.
-MoreGenesTable::Row more_genes_row(std::uint64_t generation, std::uint64_t island, std::size_t first,
-                                   const std::vector<simulation::GeneStatistics>& statistics,
-                                   const std::optional<evolution::SelectionAccount>& account) {
-    MoreGenesTable::Row row{.generation = generation, .island = island, .statistics = {}, .account = {}};
-    for (std::size_t gene = first; gene < statistics.size(); ++gene) {
-        const simulation::GeneStatistics& of = statistics[gene];
-        row.statistics.insert(row.statistics.end(), {of.mean, of.deviation, of.min, of.max});
-    }
-    for (std::size_t gene = first; account && gene < account->size(); ++gene) {
-        const evolution::GeneAccount& of = (*account)[gene];
-        row.account.insert(row.account.end(), {of.selection, of.transmission, of.migration, of.change});
-    }
-    return row;
-}
-
-/// Adds the genes of a row to those of the body. Returns false if the result has not the number of genes of the
-/// parameters.
-bool add_account(const MoreGenesTable::Row& row, const parameters::Parameters& parameters,
-                 std::optional<evolution::SelectionAccount>& account) {
-    if (!evolution::has_body_genes(parameters) && !row.account.empty()) {
-        account.emplace();
-    }
-    for (std::size_t i = 0; account && i + 3 < row.account.size(); i += 4) {
-        account->push_back({row.account[i], row.account[i + 1], row.account[i + 2], row.account[i + 3]});
-    }
-    return row.account.size() % 4 == 0 &&
-           (account ? account->size() == evolution::gene_count(parameters) : row.account.empty());
-}
-bool add_statistics(const MoreGenesTable::Row& row, const parameters::Parameters& parameters,
-                    std::vector<simulation::GeneStatistics>& genes) {
-    if (!evolution::has_body_genes(parameters)) {
-        genes.clear(); // the columns contain 0
-    }
-    for (std::size_t i = 0; i + 3 < row.statistics.size(); i += 4) {
-        genes.push_back({row.statistics[i], row.statistics[i + 1], row.statistics[i + 2], row.statistics[i + 3]});
-    }
-    return row.statistics.size() % 4 == 0 && genes.size() == evolution::gene_count(parameters);
 }
 
 constexpr const char* of_generation = "generation = ? ORDER BY island";
@@ -98,7 +57,11 @@ struct Generations::Writers {
 
 Generations::Generations(RunDatabase& database, const RunIdentity& identity, ParameterSets& parameter_sets,
                          Retention& retention)
-    : database_{database}, identity_{identity}, parameter_sets_{parameter_sets}, retention_{retention} {}
+    : database_{database}
+    , identity_{identity}
+    , parameter_sets_{parameter_sets}
+    , retention_{retention}
+    , colony_{database, identity} {}
 
 Generations::~Generations() = default;
 
@@ -159,6 +122,9 @@ Result<std::vector<evolution::NextGeneration>> Generations::read_populations(con
     const auto genes = static_cast<Eigen::Index>(evolution::gene_count(opening.parameters.active));
     while (rows.next(row)) {
         const auto organisms = static_cast<std::uint64_t>(row.born.genes.cols());
+        if (organisms == 0 && row.organism_count == 0) { // an island where all have died
+            row.born.genes.resize(genes, 0);
+        }
         if (!rows.sound() || row.island != islands.size() || organisms != row.organism_count ||
             row.born.genes.rows() != genes || static_cast<std::size_t>(genes) != gene_count() ||
             // Organisms of the first generation have no parents.
@@ -270,6 +236,9 @@ Result<std::optional<GenerationBegun>> Generations::beginning_of(std::uint64_t g
     for (std::size_t island = 0; island < accounts->size(); ++island) {
         begun.born[island].account = (*accounts)[island];
     }
+    if (auto added = colony_.add_to(begun); !added) {
+        return added.error();
+    }
     return std::optional{std::move(begun)};
 }
 
@@ -312,6 +281,9 @@ Result<std::optional<GenerationEnded>> Generations::outcome_of(std::uint64_t gen
     }
     if (!add_ratings(ended)) {
         return bad();
+    }
+    if (auto added = colony_.add_to(ended); !added) {
+        return added.error();
     }
     if (ended.outcomes.empty() && !retention_.is_retained(generation)) {
         return std::optional<GenerationEnded>{};
@@ -364,6 +336,9 @@ Result<std::vector<simulation::GenerationStatistics>> Generations::statistics_of
             }
         }
     }
+    if (auto added = colony_.add_to(statistics); !added) {
+        return added.error();
+    }
     return statistics;
 }
 
@@ -401,12 +376,19 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
     }
     std::uint64_t expected = first;
     std::vector<simulation::GenerationStatistics> rows; // rows of the generation `expected`
+    const auto add_rows = [&]() -> Result<void> {
+        auto added = colony_.add_to(rows);
+        history.emplace_back(std::exchange(rows, {}));
+        ++expected;
+        return added;
+    };
     simulation::GenerationStatistics statistics;
     SelectionAccountTable::Row account;
     while (numbers.next(statistics)) {
         if (statistics.island == 0 && !rows.empty()) {
-            history.emplace_back(std::exchange(rows, {}));
-            ++expected;
+            if (auto added = add_rows(); !added) {
+                return added;
+            }
         }
         if (!numbers.sound() || statistics.generation != expected || statistics.island != rows.size()) {
             return database_.damaged(row_text(table, expected));
@@ -427,7 +409,9 @@ Result<void> Generations::read_history(const char* table, std::uint64_t first, s
         }
     }
     if (!rows.empty()) {
-        history.emplace_back(std::move(rows));
+        if (auto added = add_rows(); !added) {
+            return added;
+        }
     }
     return database_.unless_failed();
 }
@@ -450,6 +434,7 @@ void Generations::write(const Inherited& inherited) {
             write_account(island.generation, island.island, island.account);
             write_more_genes(island.generation, island.island, island.genes, island.account);
         }
+        colony_.write_inherited({generation.begin(), generation.end()});
     }
 }
 
@@ -468,15 +453,15 @@ void Generations::write(const GenerationBegun& begun) {
         write_account(generation, island, born.account);
         write_more_genes(generation, island, {}, born.account);
     }
+    colony_.write(begun);
     // The previous generation was retained only while it was the newest.
     const std::uint64_t before = generation - 1;
     if (before <= identity_.first_generation || (before - identity_.first_generation) % retention_.keep_every() == 0) {
         return;
     }
-    for (const char* table : {"population", "founders", "outcome", "checkpoint", RatingTable::name}) {
-        if (table == RatingTable::name && !writers().rating) {
-            continue;
-        }
+    std::vector<const char*> tables = purged_tables(database_);
+    tables.push_back(CheckpointRowTable::name);
+    for (const char* table : tables) {
         database_.run("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before));
     }
 }
@@ -489,6 +474,7 @@ void Generations::write(const GenerationEnded& ended) {
             writers().rating->write(RatingTable::Row{ended.generation, island, outcome.objectives, outcome.repaired});
         }
     }
+    colony_.write(ended);
     for (const simulation::GenerationStatistics& statistics : ended.statistics) {
         writers().statistics.write(in_columns(statistics));
         write_more_genes(ended.generation, statistics.island, statistics.genes, statistics.account);

@@ -4,6 +4,7 @@
 // Owner        a RunFile.
 #pragma once
 
+#include "server/run_file/colony_tables.h"
 #include "server/run_file/parameter_sets.h"
 #include "server/run_file/records.h"
 #include "server/run_file/retention.h"
@@ -79,6 +80,7 @@ class Generations {
     const RunIdentity& identity_;
     ParameterSets& parameter_sets_;
     Retention& retention_;
+    ColonyTables colony_;
     std::unique_ptr<Writers> writers_;
 };
 

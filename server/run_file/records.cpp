@@ -7,7 +7,10 @@ namespace evod::run_file {
 
 GenerationBegun beginning_of(const simulation::World& world) {
     simulation::BredIslands bred = world.bred();
-    return {.opening = world.opening(), .born = std::move(bred.islands), .founders = std::move(bred.founders)};
+    return {.opening = world.opening(),
+            .born = std::move(bred.islands),
+            .founders = std::move(bred.founders),
+            .openings = std::move(bred.openings)};
 }
 
 Checkpoint checkpoint_of(const simulation::World& world, std::uint64_t journal_entries, base::Executor& executor) {
@@ -76,6 +79,10 @@ std::string_view name_of(simulation::CauseOfDeath cause) {
         return "poisoned";
     case simulation::CauseOfDeath::Removed:
         return "removed";
+    case simulation::CauseOfDeath::Eaten:
+        return "eaten";
+    case simulation::CauseOfDeath::Old:
+        return "old";
     }
     return "unknown";
 }

@@ -74,6 +74,9 @@ struct GenerationBegun {
     simulation::Opening opening;
     std::vector<evolution::NextGeneration> born; // one per island
     simulation::Founders founders = {};
+    std::vector<simulation::IslandOpening> openings = {}; // as in simulation::BredIslands
+
+    simulation::BredIslands bred() const { return {born, founders, openings}; }
 };
 /// The beginning of the generation of a world.
 GenerationBegun beginning_of(const simulation::World& world);
@@ -90,7 +93,7 @@ struct GenerationEnded {
 };
 /// Returns the outcome of the world's generation, which must be complete.
 GenerationEnded end_of(const simulation::World& world);
-/// "alive", "starved", "poisoned", "removed"; "unknown" for any other number.
+/// "alive", "starved", "poisoned", "removed", "eaten", "old"; "unknown" for any other number.
 std::string_view name_of(simulation::CauseOfDeath cause);
 
 /// The state of a world right after a tick, before any command of that tick. Together with the beginning of its

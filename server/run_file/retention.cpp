@@ -1,6 +1,7 @@
 #include "server/run_file/retention.h"
 
 #include "server/run_file/rows.h"
+#include "server/run_file/schema.h"
 
 #include <algorithm>
 #include <string>
@@ -130,11 +131,12 @@ Result<void> Retention::purge_generations() {
         return {};
     }
     database_.begin();
+    const std::vector<const char*> tables = purged_tables(database_);
     const auto free_pages = [this] { return database_.number("PRAGMA freelist_count"); };
     const std::int64_t enough = free_pages() + pages_at_once;
     for (std::size_t i = 0; i < generations.size() && free_pages() < enough; ++i) {
         // Deletes the population last, because the query above finds a generation only while it has a population.
-        for (const char* table : {OutcomeTable::name, FoundersTable::name, PopulationTable::name}) {
+        for (const char* table : tables) {
             if (free_pages() < enough) {
                 database_.run("DELETE FROM " + std::string{table} +
                               " WHERE generation = " + std::to_string(generations[i]));

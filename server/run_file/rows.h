@@ -5,6 +5,7 @@
 
 #include "server/run_file/records.h"
 #include "server/run_file/table.h"
+#include "server/simulation/colony.h"
 
 #include <array>
 #include <string>
@@ -235,6 +236,74 @@ struct MoreGenesTable {
         column("statistics", Blob{row.statistics});
         column("account", Blob{row.account});
     }
+};
+
+// The tables of colonies (colony.h), which other files lack.
+
+/// The opening of each interval, from the second one on; only with births.
+struct IntervalTable {
+    static constexpr const char* name = "interval";
+    static constexpr std::size_t key_columns = 2;
+    struct Row {
+        std::uint64_t generation = 0, island = 0;
+        std::string opening; // packed (checkpoint.h)
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("opening", Blob{row.opening});
+    }
+};
+
+/// The births of each interval, as in IslandOutcome; only with births.
+struct BirthTable {
+    static constexpr const char* name = "birth";
+    static constexpr std::size_t key_columns = 2;
+    template <class Births>
+    struct RowOf {
+        std::uint64_t generation, island;
+        Births births;
+    };
+    using Row = RowOf<std::vector<simulation::Birth>>;
+    using View = RowOf<const std::vector<simulation::Birth>&>;
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("births", Blob{row.births});
+    }
+};
+
+/// What only colonies have: a row of the prey, and one of the predators if there are any. A fork also has the rows of
+/// the generations that it inherited, as in the two tables that follow.
+struct ColonyTable {
+    static constexpr const char* name = "colony";
+    static constexpr std::size_t key_columns = 3;
+    static constexpr bool one_line = true;
+    struct Row {
+        std::uint64_t generation = 0, island = 0;
+        simulation::Species species = simulation::Species::Prey;
+        simulation::ColonyStatistics colony;
+    };
+    template <class R, class C>
+    static void columns(R& row, C&& column) {
+        column("generation", row.generation);
+        column("island", row.island);
+        column("species", row.species);
+        simulation::for_each_colony_number(row.colony, column);
+    }
+};
+
+/// The statistics of predators; `statistics` and the tables that follow it contain those of the prey.
+struct PredatorStatisticsTable : StatisticsTable {
+    static constexpr const char* name = "predator_statistics";
+};
+struct PredatorAccountTable : SelectionAccountTable {
+    static constexpr const char* name = "predator_account";
+};
+struct PredatorMoreGenesTable : MoreGenesTable {
+    static constexpr const char* name = "predator_more_genes";
 };
 
 /// A fork's copy of its origin's statistics, for the generations before the fork's first one.

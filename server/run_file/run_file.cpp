@@ -193,10 +193,8 @@ Result<void> RunFile::read_beginning() {
             identity_.run.parameters = (*opening)->parameters.active;
         }
     }
-    if (has_more_genes(identity_.run.parameters)) {
-        if (auto whole = check_more_genes(database_); !whole) {
-            return whole;
-        }
+    if (auto whole = check_optional_tables(database_, identity_.run.parameters); !whole) {
+        return whole;
     }
     if (auto read = retention_.read(); !read) {
         return read;

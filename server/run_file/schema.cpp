@@ -42,15 +42,31 @@ void create_all_tables(Database& database) {
     database.run("CREATE INDEX journal_key ON journal (user, client_key, request_id)");
 }
 
+void create_colony_tables(Database& database) {
+    create_tables<IntervalTable, BirthTable, ColonyTable, PredatorStatisticsTable, PredatorAccountTable,
+                  PredatorMoreGenesTable>(database);
+}
+
+constexpr std::string_view colony_tables[] = {IntervalTable::name,        BirthTable::name,
+                                              ColonyTable::name,          PredatorStatisticsTable::name,
+                                              PredatorAccountTable::name, PredatorMoreGenesTable::name};
+
 /// Files that were created in a format before 4 may lack the first of these tables. Files of chromosomes with body
-/// genes alone lack the second: check_more_genes(). Files of worlds that compute their fitness lack the third.
+/// genes alone lack the second, and files of worlds that are not colonies lack colony_tables: check_optional_tables().
+/// Files of worlds that compute their fitness lack the third.
 constexpr std::string_view optional_tables[] = {FirstPopulationTable::name, MoreGenesTable::name, RatingTable::name};
+
+bool is_optional(std::string_view table) {
+    return std::ranges::find(optional_tables, table) != std::end(optional_tables) ||
+           std::ranges::find(colony_tables, table) != std::end(colony_tables);
+}
 
 const Schema& expected_schema() {
     static const Schema expected = [] {
         Database database{":memory:", Database::Mode::Write};
         create_all_tables(database);
         create_tables<MoreGenesTable, RatingTable>(database);
+        create_colony_tables(database);
         Schema schema;
         for (Statement rows{database, all_of_schema}; rows.row();) {
             schema.insert(read_schema_row(rows));
@@ -69,6 +85,10 @@ std::string described(const SchemaRow& row) {
     return text;
 }
 
+bool has_table(RunDatabase& database, std::string_view name) {
+    return database.number("SELECT count(*) FROM sqlite_schema WHERE name = '" + std::string{name} + "'") > 0;
+}
+
 Result<void> check_tables(RunDatabase& database) {
     Schema found;
     for (Statement rows{database.database, all_of_schema}; rows.row();) {
@@ -84,7 +104,7 @@ Result<void> check_tables(RunDatabase& database) {
     }
     const Schema& expected = expected_schema();
     for (auto row = expected.rbegin(); row != expected.rend(); ++row) { // reports a missing table before its indices
-        if (!found.contains(*row) && std::ranges::find(optional_tables, row->table) == std::end(optional_tables)) {
+        if (!found.contains(*row) && !is_optional(row->table)) {
             return refusal(RefusalCode::DataLoss, database.path + " is damaged: it lacks " + described(*row));
         }
     }
@@ -98,8 +118,23 @@ bool has_more_genes(const parameters::Parameters& parameters) {
            evolution::genes_of(evolution::GeneGroup::Body, parameters);
 }
 
+bool has_colony_tables(const parameters::Parameters& parameters) {
+    return simulation::is_colony(parameters);
+}
+
+std::vector<const char*> purged_tables(RunDatabase& database) {
+    std::vector<const char*> tables;
+    for (const char* table : {RatingTable::name, IntervalTable::name, BirthTable::name, OutcomeTable::name,
+                              FoundersTable::name, PopulationTable::name}) {
+        if (has_table(database, table)) {
+            tables.push_back(table);
+        }
+    }
+    return tables;
+}
+
 bool has_ratings(RunDatabase& database) {
-    return database.number("SELECT count(*) FROM sqlite_schema WHERE name = 'rating'") > 0;
+    return has_table(database, RatingTable::name);
 }
 
 void create_schema(RunDatabase& database, const parameters::Parameters& parameters) {
@@ -111,6 +146,9 @@ void create_schema(RunDatabase& database, const parameters::Parameters& paramete
     }
     if (parameters.fitness == parameters::FitnessFunction::External) {
         create_tables<RatingTable>(database.database);
+    }
+    if (has_colony_tables(parameters)) {
+        create_colony_tables(database.database);
     }
 }
 
@@ -144,10 +182,19 @@ Result<void> check_schema(RunDatabase& database) {
     return check_tables(database);
 }
 
-Result<void> check_more_genes(RunDatabase& database) {
-    const std::string name{MoreGenesTable::name};
-    if (database.number("SELECT count(*) FROM sqlite_schema WHERE name = '" + name + "'") == 0) {
-        return refusal(RefusalCode::DataLoss, database.path + " is damaged: it lacks the table \"" + name + '"');
+Result<void> check_optional_tables(RunDatabase& database, const parameters::Parameters& parameters) {
+    std::vector<std::string_view> needed;
+    if (has_more_genes(parameters)) {
+        needed.emplace_back(MoreGenesTable::name);
+    }
+    if (has_colony_tables(parameters)) {
+        needed.insert(needed.end(), std::begin(colony_tables), std::end(colony_tables));
+    }
+    for (const std::string_view table : needed) {
+        if (!has_table(database, table)) {
+            return refusal(RefusalCode::DataLoss,
+                           database.path + " is damaged: it lacks the table \"" + std::string{table} + '"');
+        }
     }
     return {};
 }

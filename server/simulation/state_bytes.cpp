@@ -21,6 +21,9 @@ static_assert(std::endian::native == std::endian::little, "columns are written a
 Refusal refusal(const char* message) {
     return {.code = base::RefusalCode::DataLoss, .message = message, .violations = {}};
 }
+Refusal wrong_size() {
+    return refusal("its size differs from that of a state of this world");
+}
 
 /// Calls visit(range, member) for every column, in order. `range` contains the elements; `member` is a member of
 /// theirs.
@@ -46,10 +49,17 @@ void for_each_column(Island& island, Visit&& visit) {
         visit(*items, &Items::Item::y);
         visit(*items, &Items::Item::due_tick);
     }
+    // The rest is empty unless the island is one of a colony.
+    visit(island.life_records.children, std::identity{});
+    visit(island.hunts_from, std::identity{});
+    for (auto& chromosomes : island.latest_born) {
+        visit(chromosomes, std::identity{});
+    }
 }
 
 // Counts are written as they are in memory.
 static_assert(sizeof(IslandCounts) == 40);
+static_assert(sizeof(IslandState::colony) == 96);
 
 /// The flags in the first byte of a state.
 constexpr std::uint8_t over_flag = 1, placed_flag = 2, given_flag = 4;
@@ -57,6 +67,12 @@ constexpr std::uint8_t over_flag = 1, placed_flag = 2, given_flag = 4;
 /// The numbers of entities that were placed on an island.
 struct PlacedCounts {
     std::uint32_t organisms = 0, food = 0, poison = 0;
+};
+
+/// What else determines the size of an island's state in a colony.
+struct ColonyParts {
+    std::array<std::uint32_t, 2> latest_born{}; // numbers of genes
+    std::uint32_t ended_predators = 0;          // whether the statistics of the ended generation contain predators
 };
 
 bool has_placed(const PlacedCounts& counts) {
@@ -74,7 +90,7 @@ std::vector<IslandShape> with_placed(std::span<const IslandShape> shapes, std::s
     return whole;
 }
 
-/// Calls visit(number) for every number of the statistics.
+/// Calls visit(number) for every number of the statistics, then for those of the predators.
 template <class Statistics, class Visit>
 void for_each_statistic(Statistics& statistics, const Visit& visit) {
     for_each_number(statistics, [&](const std::string&, auto& number) { visit(number); });
@@ -84,34 +100,61 @@ void for_each_statistic(Statistics& statistics, const Visit& visit) {
         visit(gene.min);
         visit(gene.max);
     }
+    if (statistics.colony) {
+        for_each_colony_number(*statistics.colony, [&](const std::string&, auto& number) { visit(number); });
+    }
+    for (auto& predators : statistics.predators) {
+        for_each_statistic(predators, visit);
+    }
 }
 
-std::size_t bytes_of_statistics(std::size_t gene_count) {
+/// Statistics with the parts that those of an island of this shape have.
+GenerationStatistics empty_statistics(const IslandShape& shape, bool with_predators) {
+    GenerationStatistics statistics{.genes = std::vector<GeneStatistics>(shape.genes)};
+    if (shape.is_colony) {
+        statistics.colony.emplace();
+    }
+    if (with_predators) {
+        statistics.predators = {empty_statistics(shape, false)};
+    }
+    return statistics;
+}
+
+std::size_t bytes_of_statistics(const IslandShape& shape, bool with_predators) {
     std::size_t bytes = 0;
-    const GenerationStatistics statistics{.genes = std::vector<GeneStatistics>(gene_count)};
+    const GenerationStatistics statistics = empty_statistics(shape, with_predators);
     for_each_statistic(statistics, [&](const auto&) { bytes += 8; });
     return bytes;
 }
 
-/// The size in bytes of the numbers of placed entities, and of the genes and ticks of placed organisms.
+/// The size in bytes of the numbers of placed entities, and of the genes, ticks and parents of placed organisms.
 std::size_t bytes_of(std::span<const PlacedCounts> placed, std::span<const IslandShape> shapes) {
     std::size_t bytes = 0;
     for (std::size_t i = 0; i < placed.size(); ++i) {
-        bytes += sizeof placed[i] + placed[i].organisms * (shapes[i].genes * sizeof(float) + sizeof(std::uint32_t));
+        const std::size_t of_organism = shapes[i].genes * sizeof(float) + sizeof(std::uint32_t) +
+                                        (shapes[i].is_colony ? sizeof(evolution::Parents) : 0);
+        bytes += sizeof placed[i] + placed[i].organisms * of_organism;
     }
     return bytes;
 }
 
 /// The size of the uncompressed state in bytes, including its first byte, without bytes_of(placed).
-std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
-    std::size_t bytes = 1;
-    for (const IslandShape& shape : shapes) {
-        bytes += sizeof(IslandCounts) + shape.organisms * std::size_t{13};
+///
+/// colony  one per island in a colony; otherwise empty.
+std::size_t bytes_of(std::span<const IslandShape> shapes, std::span<const ColonyParts> colony, bool over) {
+    std::size_t bytes = 1 + colony.size_bytes();
+    for (const ColonyParts& parts : colony) {
+        bytes +=
+            sizeof(IslandState::colony) + (std::size_t{parts.latest_born[0]} + parts.latest_born[1]) * sizeof(float);
+    }
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const IslandShape& shape = shapes[i];
+        bytes += sizeof(IslandCounts) + shape.organisms * std::size_t{shape.is_colony ? 21u : 13u};
         if (shape.has_bodies) {
             bytes += shape.organisms * std::size_t{shape.has_headings ? 24u : 20u} + shape.crates * std::size_t{16} +
                      (std::size_t{shape.food} + shape.poison) * 12;
         }
-        bytes += over ? bytes_of_statistics(shape.genes) : 0;
+        bytes += over ? bytes_of_statistics(shape, !colony.empty() && colony[i].ended_predators > 0) : 0;
     }
     return bytes;
 }
@@ -132,6 +175,8 @@ std::size_t bytes_of(std::span<const RatingCounts> ratings) {
 
 void resize(IslandState& island, const IslandShape& shape) {
     island.life_records.begin_generation(shape.organisms);
+    island.life_records.children.assign(shape.is_colony ? shape.organisms : 0, 0);
+    island.hunts_from.assign(shape.is_colony ? shape.organisms : 0, 0);
     if (!shape.has_bodies) {
         return;
     }
@@ -161,19 +206,30 @@ struct Layout {
     std::vector<IslandShape> shapes;  // with the placed entities
     std::vector<PlacedCounts> placed; // empty if nothing was placed
     std::vector<RatingCounts> ratings;
+    std::vector<ColonyParts> colony; // empty unless the world is a colony
 
-    std::size_t bytes() const { return bytes_of(shapes, over) + bytes_of(placed, shapes) + bytes_of(ratings); }
+    std::size_t bytes() const { return bytes_of(shapes, colony, over) + bytes_of(placed, shapes) + bytes_of(ratings); }
 };
 
 Layout layout_of(const WorldState& state) {
     Layout layout;
     layout.over = !state.ended.empty();
     const std::uint32_t gene_count = gene_count_of(state);
-    for (const IslandState& island : state.islands) {
+    const bool colony = is_colony(state.parameters.active);
+    for (std::size_t i = 0; i < state.islands.size(); ++i) {
+        const IslandState& island = state.islands[i];
+        if (colony) {
+            const auto genes = [&](std::size_t species) {
+                return static_cast<std::uint32_t>(island.latest_born[species].size());
+            };
+            const bool has_predators = layout.over && !state.ended[i].predators.empty();
+            layout.colony.push_back({{genes(0), genes(1)}, has_predators});
+        }
         layout.shapes.push_back({.genes = gene_count,
                                  .organisms = static_cast<std::uint32_t>(island.life_records.cause.size()),
-                                 .has_bodies = !island.organisms.empty(),
+                                 .has_bodies = colony || !island.organisms.empty(), // it may have no organisms
                                  .has_headings = !island.headings.empty(),
+                                 .is_colony = colony,
                                  .crates = static_cast<std::uint32_t>(island.crates.size()),
                                  .food = static_cast<std::uint32_t>(island.food.size()),
                                  .poison = static_cast<std::uint32_t>(island.poison.size())});
@@ -214,11 +270,15 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
     };
     bytes.add(static_cast<std::uint8_t>((layout.over ? over_flag : 0) | (layout.placed.empty() ? 0 : placed_flag) |
                                         (layout.ratings.empty() ? 0 : given_flag)));
+    bytes.add(std::span{layout.colony});
     bytes.add(std::span{layout.placed});
     for (const IslandState& island : state.islands) {
         for (const IslandState::Placed& organism : island.placed) {
             bytes.add(std::span{organism.genes});
             bytes.add(organism.tick);
+            if (!layout.colony.empty()) {
+                bytes.add(organism.parents);
+            }
         }
     }
     bytes.add(std::span{layout.ratings});
@@ -228,6 +288,9 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
     }
     for (const IslandState& island : state.islands) {
         bytes.add(island.counts);
+        if (!layout.colony.empty()) {
+            bytes.add(island.colony);
+        }
         for_each_column(island, write_column);
     }
     for (const GenerationStatistics& statistics : state.ended) {
@@ -242,68 +305,118 @@ void write_state(const WorldState& state, const std::function<void(std::string_v
     write(bytes.take());
 }
 
+namespace {
+
+/// The most organisms that can come to an island within a generation.
+std::uint32_t arrivals_max(const IslandShape& shape) {
+    return placed_max + (shape.is_colony ? born_max : 0);
+}
+
+bool are_of_colony(std::span<const IslandShape> shapes) {
+    return !shapes.empty() && shapes.front().is_colony;
+}
+
+} // namespace
+
 Result<void> check_state_size(std::size_t bytes, std::span<const IslandShape> shapes) {
-    const PlacedCounts most{placed_max, placed_max, placed_max};
-    const std::vector<PlacedCounts> most_placed(shapes.size(), most);
+    std::vector<PlacedCounts> most_placed;
     std::vector<RatingCounts> most_given;
-    for (const IslandShape& shape : with_placed(shapes, most_placed)) {
-        most_given.push_back({shape.organisms * objectives_max, shape.organisms * shape.genes});
+    std::vector<ColonyParts> least_colony, most_colony;
+    for (const IslandShape& shape : shapes) {
+        most_placed.push_back({arrivals_max(shape), placed_max, placed_max});
+        const std::uint32_t organisms = shape.organisms + placed_max;
+        most_given.push_back({organisms * objectives_max, organisms * shape.genes});
+        if (shape.is_colony) {
+            least_colony.emplace_back();
+            most_colony.push_back({{latest_genes_max, latest_genes_max}, 1});
+        }
     }
-    if (bytes < bytes_of(shapes, false) || bytes > bytes_of(with_placed(shapes, most_placed), true) +
-                                                       bytes_of(most_placed, shapes) + bytes_of(most_given)) {
-        return refusal("its size differs from that of a state of this world");
+    if (bytes < bytes_of(shapes, least_colony, false) ||
+        bytes > bytes_of(with_placed(shapes, most_placed), most_colony, true) + bytes_of(most_placed, shapes) +
+                    bytes_of(most_given)) {
+        return wrong_size();
     }
     return {};
 }
 
-Result<void> read_state(std::string_view bytes, std::span<const IslandShape> shapes, WorldState& state) {
+namespace {
+
+/// Reads the numbers that determine the sizes of all other parts. Refused unless these are the sizes of the bytes.
+Result<Layout> read_layout(std::string_view bytes, std::span<const IslandShape> shapes) {
     if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > (over_flag | placed_flag | given_flag)) {
         return refusal("its first byte is not 0 to 7");
     }
-    const bool over = (static_cast<std::uint8_t>(bytes.front()) & over_flag) != 0;
-    const bool has_counts = (static_cast<std::uint8_t>(bytes.front()) & placed_flag) != 0;
-    std::vector<PlacedCounts> placed(has_counts ? shapes.size() : 0);
-    base::Unpacker columns{bytes.substr(1)};
-    if (bytes.size() < 1 + placed.size() * sizeof(PlacedCounts)) {
-        return refusal("its size differs from that of a state of this world");
+    const auto flags = static_cast<std::uint8_t>(bytes.front());
+    Layout layout;
+    layout.over = (flags & over_flag) != 0;
+    layout.placed.resize((flags & placed_flag) != 0 ? shapes.size() : 0);
+    layout.ratings.resize((flags & given_flag) != 0 ? shapes.size() : 0);
+    layout.colony.resize(are_of_colony(shapes) ? shapes.size() : 0);
+    const std::size_t colony_bytes = std::span{layout.colony}.size_bytes();
+    if (bytes.size() < 1 + colony_bytes + std::span{layout.placed}.size_bytes()) {
+        return wrong_size();
     }
-    for (PlacedCounts& counts : placed) {
-        columns.read(counts);
-        if (counts.organisms > placed_max || counts.food > placed_max || counts.poison > placed_max) {
+    base::Unpacker counts{bytes.substr(1)};
+    counts.read(std::span{layout.colony});
+    for (const ColonyParts& parts : layout.colony) {
+        if (std::ranges::max(parts.latest_born) > latest_genes_max || parts.ended_predators > layout.over) {
+            return refusal("it has more genes of latest births, or other statistics, than a world can have");
+        }
+    }
+    for (std::size_t i = 0; i < layout.placed.size(); ++i) {
+        PlacedCounts& placed = layout.placed[i];
+        counts.read(placed);
+        if (placed.organisms > arrivals_max(shapes[i]) || placed.food > placed_max || placed.poison > placed_max) {
             return refusal("it has more placed items or organisms than a world can have");
         }
     }
-    const std::vector<IslandShape> whole = with_placed(shapes, placed);
-    const bool has_given = (static_cast<std::uint8_t>(bytes.front()) & given_flag) != 0;
-    std::vector<RatingCounts> ratings(has_given ? shapes.size() : 0);
-    const std::size_t placed_bytes = bytes_of(placed, shapes);
-    if (bytes.size() < 1 + placed_bytes + ratings.size() * sizeof(RatingCounts)) {
-        return refusal("its size differs from that of a state of this world");
+    layout.shapes = with_placed(shapes, layout.placed);
+    const std::size_t before_ratings = 1 + colony_bytes + bytes_of(layout.placed, shapes);
+    if (bytes.size() < before_ratings + std::span{layout.ratings}.size_bytes()) {
+        return wrong_size();
     }
-    base::Unpacker counts{bytes.substr(1 + placed_bytes)};
-    for (std::size_t i = 0; i < ratings.size(); ++i) {
-        counts.read(ratings[i]);
-        const std::size_t organisms = whole[i].organisms;
-        if (ratings[i].fitness > organisms * objectives_max || ratings[i].genes > organisms * whole[i].genes) {
+    counts = base::Unpacker{bytes.substr(before_ratings)};
+    for (std::size_t i = 0; i < layout.ratings.size(); ++i) {
+        RatingCounts& rating = layout.ratings[i];
+        counts.read(rating);
+        const std::size_t organisms = layout.shapes[i].organisms;
+        if (rating.fitness > organisms * objectives_max || rating.genes > organisms * layout.shapes[i].genes) {
             return refusal("it has fitness for more organisms than its world has");
         }
     }
-    if (bytes.size() != bytes_of(whole, over) + placed_bytes + bytes_of(ratings)) {
-        return refusal("its size differs from that of a state of this world");
+    if (bytes.size() != layout.bytes()) {
+        return wrong_size();
     }
+    return layout;
+}
+
+} // namespace
+
+Result<void> read_state(std::string_view bytes, std::span<const IslandShape> shapes, WorldState& state) {
+    const Result<Layout> layout = read_layout(bytes, shapes);
+    if (!layout) {
+        return layout.error();
+    }
+    base::Unpacker columns{
+        bytes.substr(1 + std::span{layout->colony}.size_bytes() + std::span{layout->placed}.size_bytes())};
     state.islands.assign(shapes.size(), {});
-    state.ratings.assign(ratings.size(), {});
-    state.ended.assign(over ? shapes.size() : 0, {});
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        state.islands[i].placed_food = placed[i].food;
-        state.islands[i].placed_poison = placed[i].poison;
-        state.islands[i].placed.resize(placed[i].organisms);
+    state.ratings.assign(layout->ratings.size(), {});
+    state.ended.clear();
+    for (std::size_t i = 0; i < layout->placed.size(); ++i) {
+        const PlacedCounts& placed = layout->placed[i];
+        state.islands[i].placed_food = placed.food;
+        state.islands[i].placed_poison = placed.poison;
+        state.islands[i].placed.resize(placed.organisms);
         for (IslandState::Placed& organism : state.islands[i].placed) {
             organism.genes.resize(shapes[i].genes);
             columns.read(std::span{organism.genes});
             columns.read(organism.tick);
+            if (shapes[i].is_colony) {
+                columns.read(organism.parents);
+            }
         }
     }
+    std::vector<RatingCounts> ratings(layout->ratings.size());
     columns.read(std::span{ratings});
     for (std::size_t i = 0; i < ratings.size(); ++i) {
         state.ratings[i].fitness.resize(ratings[i].fitness);
@@ -313,28 +426,107 @@ Result<void> read_state(std::string_view bytes, std::span<const IslandShape> sha
     }
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         IslandState& island = state.islands[i];
-        resize(island, whole[i]);
+        resize(island, layout->shapes[i]);
         columns.read(island.counts);
+        if (shapes[i].is_colony) {
+            columns.read(island.colony);
+            for (std::size_t species = 0; species < island.latest_born.size(); ++species) {
+                island.latest_born[species].resize(layout->colony[i].latest_born[species]);
+            }
+        }
         for_each_column(island, [&](auto& range, auto&& part) {
             for (auto& element : range) {
                 columns.read(std::invoke(part, element));
             }
         });
     }
-    for (std::size_t i = 0; i < state.ended.size(); ++i) {
-        state.ended[i].genes.resize(shapes[i].genes);
-        for_each_statistic(state.ended[i], [&]<class T>(T& number) {
-            if constexpr (std::is_floating_point_v<T>) {
-                columns.read(number);
-            } else {
-                std::uint64_t whole = 0;
-                columns.read(whole);
-                number = static_cast<T>(whole);
-            }
-        });
+    for (std::size_t i = 0; layout->over && i < shapes.size(); ++i) {
+        const bool has_predators = shapes[i].is_colony && layout->colony[i].ended_predators > 0;
+        for_each_statistic(state.ended.emplace_back(empty_statistics(shapes[i], has_predators)),
+                           [&]<class T>(T& number) {
+                               if constexpr (std::is_floating_point_v<T>) {
+                                   columns.read(number);
+                               } else {
+                                   std::uint64_t whole = 0;
+                                   columns.read(whole);
+                                   number = static_cast<T>(whole);
+                               }
+                           });
     }
     EVOD_ASSERT(columns.empty());
     return {};
+}
+
+namespace {
+
+/// The first numbers of an opening's bytes. They determine the sizes of the other parts.
+struct OpeningHead {
+    std::uint32_t predator_count, next_number, organisms, has_headings, crates, food, poison;
+
+    IslandShape shape() const {
+        return {.genes = 0, // nothing has been placed
+                .organisms = organisms,
+                .has_headings = has_headings != 0,
+                .is_colony = true,
+                .crates = crates,
+                .food = food,
+                .poison = poison};
+    }
+};
+
+} // namespace
+
+std::string bytes_of_opening(const IslandOpening& opening) {
+    const IslandState& island = opening.state;
+    EVOD_ASSERT(island.placed.empty() && island.placed_food == 0 && island.placed_poison == 0);
+    base::Packer bytes;
+    bytes.add(OpeningHead{.predator_count = opening.predator_count,
+                          .next_number = opening.next_number,
+                          .organisms = static_cast<std::uint32_t>(island.life_records.cause.size()),
+                          .has_headings = !island.headings.empty(),
+                          .crates = static_cast<std::uint32_t>(island.crates.size()),
+                          .food = static_cast<std::uint32_t>(island.food.size()),
+                          .poison = static_cast<std::uint32_t>(island.poison.size())});
+    bytes.add(std::span{opening.numbers});
+    bytes.add(std::span{opening.age_ticks});
+    std::string all = bytes.take();
+    WorldState state;
+    state.parameters.active.reproduction = parameters::Reproduction::Births; // has the parts of colonies
+    state.islands = {island};
+    write_state(state, [&](std::string_view piece) { all += piece; });
+    return all;
+}
+
+Result<IslandOpening> read_opening(std::string_view bytes) {
+    OpeningHead head{};
+    if (bytes.size() < sizeof head) {
+        return wrong_size();
+    }
+    base::Unpacker numbers{bytes};
+    numbers.read(head);
+    constexpr std::size_t of_organism = 2 * sizeof(std::uint32_t);
+    if (head.predator_count > head.organisms || (bytes.size() - sizeof head) / of_organism < head.organisms) {
+        return wrong_size();
+    }
+    IslandOpening opening{.predator_count = head.predator_count,
+                          .next_number = head.next_number,
+                          .numbers = std::vector<std::uint32_t>(head.organisms),
+                          .age_ticks = std::vector<std::uint32_t>(head.organisms),
+                          .state = {}};
+    numbers.read(std::span{opening.numbers});
+    numbers.read(std::span{opening.age_ticks});
+    WorldState state;
+    const IslandShape shape = head.shape();
+    const std::string_view rest = bytes.substr(sizeof head + head.organisms * of_organism);
+    if (auto read = read_state(rest, {&shape, 1}, state); !read) {
+        return read.error();
+    }
+    opening.state = std::move(state.islands.front());
+    if (!state.ended.empty() || !state.ratings.empty() || !opening.state.placed.empty() ||
+        opening.state.placed_food > 0 || opening.state.placed_poison > 0) {
+        return refusal("it is not the beginning of an interval");
+    }
+    return opening;
 }
 
 } // namespace evod::simulation

@@ -90,6 +90,8 @@ void compare(const Scenario& scenario, std::uint32_t processes, std::uint64_t sl
         ASSERT_TRUE(world.is_shared());
         expect_equal(advance(world, scenario.ticks, slice, executor), alone);
         EXPECT_EQ(world.bred().founders, reference.bred().founders);
+        EXPECT_EQ(world.bred().openings, reference.bred().openings);
+        EXPECT_EQ(world.state(executor).islands, reference.state(one).islands);
         for (std::size_t i = 0; i < world.island_count(); ++i) {
             EXPECT_EQ(world.island(i).hash(), reference.island(i).hash());
         }
@@ -151,6 +153,24 @@ TEST(SharedWorlds, EndAGenerationWhenAllOrganismsDied) {
         }
         for (const std::uint32_t processes : {2, 5, 8}) {
             compare(scenario, processes, 1 + 50 * (seed % 3), 1);
+        }
+    }
+}
+
+/// On some islands, everything dies.
+TEST(SharedWorlds, MayBeColonies) {
+    constexpr const char* kinds[] = {
+        R"({"reproduction": "births", "births": "asexual", "lifespan_s": 5, "birth_cost": 5)",
+        R"({"reproduction": "births", "births": "asexual", "predator_count": 3, "predator_from": 2, "handling_s": 1,
+            "shuffle_births": true)",
+        R"({"predator_count": 5, "predator_from": 2, "handling_s": 1, "predator_elite_count": 1)"};
+    for (const char* kind : kinds) {
+        const std::string experiment = std::string{kind} + R"(, "island_count": 4, "population_size": 12,
+            "generation_s": 2, "food_count": 60, "food_health": 60, "migration": "ring", "migration_epoch": 2})";
+        const Scenario scenario{
+            .name = "colony", .experiment = experiment, .seed = base::Seed{3}, .ticks = 650, .changes = {}};
+        for (const std::uint32_t processes : {2, 3, 4}) {
+            compare(scenario, processes, processes == 3 ? 1 : 47, 1);
         }
     }
 }

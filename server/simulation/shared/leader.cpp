@@ -143,7 +143,8 @@ class SharedIslands final : public Islands {
         base::InlineExecutor executor; // a reader has none
         if (wanted.with_organisms) {
             Island begun{begun_.seed, wanted.index};
-            begun.begin_generation(begun_.parameters, begun_.generation, std::move(sent.bred.at(0)), executor);
+            begun.begin_generation(begun_.parameters, begun_.generation, std::move(sent.bred.at(0)), executor,
+                                   sent.opening.empty() ? std::nullopt : std::optional{std::move(sent.opening[0])});
             brought_.emplace(wanted.index,
                              BroughtIsland{.begun = begun, .now = begun, .is_current = false, .founders = {}});
         }

@@ -7,6 +7,7 @@
 
 #include "server/base/packing.h"
 #include "server/simulation/local_islands.h"
+#include "server/simulation/state_bytes.h"
 
 #include <cstdint>
 #include <span>
@@ -62,20 +63,20 @@ template <>
 struct Fields<evolution::NextGeneration> {
     static void visit(auto& generation, auto&& each) {
         each(generation.genes, generation.parents, generation.elite_count, generation.survivor_count,
-             generation.clamped_count, generation.account);
+             generation.clamped_count, generation.account, generation.predator_count, generation.predator_account);
     }
 };
 template <>
 struct Fields<simulation::GenerationStatistics> {
     static void visit(auto& statistics, auto&& each) {
         for_each_number(statistics, [&](const char*, auto& number) { each(number); });
-        each(statistics.genes, statistics.account);
+        each(statistics.genes, statistics.account, statistics.colony, statistics.predators);
     }
 };
 template <>
 struct Fields<simulation::IslandOutcome> {
     static void visit(auto& outcome, auto&& each) {
-        each(outcome.fitness, outcome.objectives, outcome.repaired, outcome.lived_ticks, outcome.cause);
+        each(outcome.fitness, outcome.objectives, outcome.repaired, outcome.lived_ticks, outcome.cause, outcome.births);
     }
 };
 template <>
@@ -83,8 +84,23 @@ struct Fields<simulation::Rating> {
     static void visit(auto& rating, auto&& each) { each(rating.fitness, rating.genes); }
 };
 template <>
+struct Fields<simulation::IslandOpening> {
+    static void visit(auto& opening, auto&& each) {
+        std::string bytes;
+        if constexpr (std::is_const_v<std::remove_reference_t<decltype(opening)>>) {
+            bytes = bytes_of_opening(opening);
+        }
+        each(bytes);
+        if constexpr (!std::is_const_v<std::remove_reference_t<decltype(opening)>>) {
+            auto read = simulation::read_opening(bytes);
+            EVOD_ASSERT(read.has_value());
+            opening = *std::move(read);
+        }
+    }
+};
+template <>
 struct Fields<simulation::BredIslands> {
-    static void visit(auto& bred, auto&& each) { each(bred.islands, bred.founders); }
+    static void visit(auto& bred, auto&& each) { each(bred.islands, bred.founders, bred.openings); }
 };
 template <>
 struct Fields<simulation::Migrants> {
@@ -202,9 +218,10 @@ struct ExchangedResults {
 /// An island as rank 0 gets it.
 struct SentIsland {
     std::vector<evolution::NextGeneration> bred; // one element, or none if rank 0 has the organisms
+    std::vector<IslandOpening> opening;          // with births; one element, or none, too
     std::vector<std::uint32_t> founders;
     std::string state; // state_bytes.h
-    static void visit(auto& island, auto&& each) { each(island.bred, island.founders, island.state); }
+    static void visit(auto& island, auto&& each) { each(island.bred, island.opening, island.founders, island.state); }
 };
 
 } // namespace evod::simulation::shared

@@ -132,9 +132,10 @@ bool Part::perform(const Begin& order, base::Executor& executor, BredIslands bre
         if (order.is_given) {
             auto islands = divide(std::move(bred.islands));
             auto founders = divide(std::move(bred.founders));
+            auto openings = divide(std::move(bred.openings));
             std::vector<BredIslands> parts;
             for (std::uint32_t rank = 0; rank < exchange_.size(); ++rank) {
-                parts.push_back({std::move(islands[rank]), std::move(founders[rank])});
+                parts.push_back({std::move(islands[rank]), std::move(founders[rank]), std::move(openings[rank])});
             }
             own = scatter(exchange_, std::move(parts));
         }
@@ -152,6 +153,7 @@ void Part::perform(const Restore& order, base::Executor& executor, const WorldSt
     std::vector<std::string> parts;
     for (std::uint32_t rank = 0; is_first() && rank < exchange_.size(); ++rank) {
         WorldState part;
+        part.parameters.active = order.parameters;
         part.islands = islands[rank];
         part.ended = ended[rank];
         part.ratings = given[rank];
@@ -248,9 +250,12 @@ std::vector<SentIsland> Part::perform(const Bring& order) const {
             const Island& island = islands_.island(index);
             const auto founders = islands_.founders(index);
             WorldState state;
+            state.parameters.active = parameters_;
             state.islands.push_back(island.state(executor));
             own.push_back(
                 {.bred = with_organisms ? std::vector{island.bred()} : std::vector<evolution::NextGeneration>{},
+                 .opening = with_organisms && island.opening() != nullptr ? std::vector{*island.opening()}
+                                                                          : std::vector<IslandOpening>{},
                  .founders = {founders.begin(), founders.end()},
                  .state = bytes_of(state)});
         }
@@ -270,6 +275,7 @@ BredIslands Part::perform(const Bred&) const {
     for (BredIslands& part : collect(exchange_, islands_.bred())) {
         std::ranges::move(part.islands, std::back_inserter(all.islands));
         std::ranges::move(part.founders, std::back_inserter(all.founders));
+        std::ranges::move(part.openings, std::back_inserter(all.openings));
     }
     return all;
 }
@@ -282,7 +288,10 @@ std::vector<IslandState> Part::perform(const States&, base::Executor& executor) 
     PartOfState own{.shapes = shapes(), .bytes = {}};
     std::vector<IslandState> states = islands_.states(executor);
     if (!is_first()) {
-        own.bytes = bytes_of({.moment = {}, .parameters = {}, .islands = std::exchange(states, {}), .ended = {}});
+        WorldState state;
+        state.parameters.active = parameters_;
+        state.islands = std::exchange(states, {});
+        own.bytes = bytes_of(state);
     }
     const std::vector<PartOfState> all = collect(exchange_, std::move(own));
     for (std::size_t rank = 1; rank < all.size(); ++rank) {

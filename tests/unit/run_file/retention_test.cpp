@@ -152,7 +152,7 @@ TEST_F(RetentionTest, LineageIsCompleteForwardsAndBackwards) {
                     const auto [first, second] = there.parents[organism];
                     strangers += first.island != island;
                     // A survivor has the genes of its parent, whatever island the parent lived on.
-                    if (organism < there.survivor_count) {
+                    if (organism < there.origins.prey.survivors) {
                         EXPECT_TRUE(
                             (begun[generation - 1].born[island].genes.col(static_cast<Eigen::Index>(organism)) ==
                              begun[generation - 2].born[first.island].genes.col(first.organism))

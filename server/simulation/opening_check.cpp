@@ -1,0 +1,102 @@
+#include "server/simulation/opening_check.h"
+
+#include "server/physics/bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evod::simulation {
+namespace {
+
+/// No tick of an interval is later; longer times are impossible, too.
+constexpr std::uint32_t tick_reachable = 1U << 30;
+/// As in world_state.cpp.
+constexpr float health_reachable = 0x1p38F, gene_reachable = 1e12F;
+
+bool are_in_order(std::span<const std::uint32_t> numbers) {
+    return std::ranges::adjacent_find(numbers, std::ranges::greater_equal{}) == numbers.end();
+}
+
+/// Whether each organism has a number of its own, below the next one: first the prey in order, then the predators.
+bool are_numbers(const IslandOpening& opening) {
+    const std::span numbers{opening.numbers};
+    std::vector<std::uint32_t> sorted{numbers.begin(), numbers.end()};
+    std::ranges::sort(sorted);
+    return are_in_order(numbers.first(numbers.size() - opening.predator_count)) &&
+           are_in_order(numbers.last(opening.predator_count)) && are_in_order(sorted) &&
+           (sorted.empty() || sorted.back() < opening.next_number);
+}
+
+bool are_records(const LifeRecords& records, std::size_t organisms) {
+    const auto all_zero = [&](const auto& column) {
+        return column.size() == organisms && std::ranges::all_of(column, [](auto value) { return value == 0; });
+    };
+    return records.cause.size() == organisms &&
+           std::ranges::all_of(records.cause, [](CauseOfDeath cause) { return cause == CauseOfDeath::Alive; }) &&
+           all_zero(records.lived_ticks) && all_zero(records.food_eaten) && all_zero(records.poison_eaten) &&
+           records.children.size() == organisms;
+}
+
+bool are_latest_births(std::span<const float> genes, std::size_t gene_count) {
+    return genes.size() % gene_count == 0 &&
+           std::ranges::all_of(genes, [](float gene) { return std::abs(gene) <= gene_reachable; });
+}
+
+} // namespace
+
+const char* fault_of(const IslandOpening& opening, const evolution::NextGeneration& bred,
+                     const parameters::Parameters& parameters) {
+    const IslandState& state = opening.state;
+    const auto organisms = static_cast<std::size_t>(bred.genes.cols());
+    const parameters::IslandPlan plan = parameters::island_plan(parameters);
+    const physics::Coordinate width = physics::to_units(plan.width_px), height = physics::to_units(plan.height_px);
+    if (opening.numbers.size() != organisms || opening.age_ticks.size() != organisms ||
+        opening.predator_count > organisms || opening.predator_count != bred.predator_count ||
+        (opening.predator_count > 0 && parameters.predator_count == 0) || !are_numbers(opening)) {
+        return "number of an organism";
+    }
+    if (!are_records(state.life_records, organisms) || state.counts != IslandCounts{} ||
+        state.colony != std::array<ColonyCounts, 2>{} || !state.placed.empty() || state.placed_food > 0 ||
+        state.placed_poison > 0) {
+        return "life of an organism";
+    }
+    const float speed_max = static_cast<float>(parameters.max_speed_px_s) * 1.001F;
+    const auto can_move = [&](const auto& body) {
+        return body.x >= 0 && body.x <= width && body.y >= 0 && body.y <= height &&
+               body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
+    };
+    const auto lives = [&](const IslandState::Organism& organism) {
+        return can_move(organism) && organism.health > 0 && organism.health <= health_reachable;
+    };
+    if (state.organisms.size() != organisms || !std::ranges::all_of(state.organisms, lives)) {
+        return "position, speed or health of an organism";
+    }
+    const bool has_headings = parameters.controller == evolution::Controller::Network;
+    const auto is_heading = [](float heading) { return std::abs(heading) <= heading_max; };
+    if (state.headings.size() != (has_headings ? organisms : 0) || !std::ranges::all_of(state.headings, is_heading)) {
+        return "heading of an organism";
+    }
+    const std::span hunts_from{state.hunts_from};
+    if (hunts_from.size() != organisms ||
+        std::ranges::any_of(hunts_from, [](std::uint32_t tick) { return tick > tick_reachable; }) ||
+        std::ranges::any_of(hunts_from.first(organisms - opening.predator_count),
+                            [](std::uint32_t tick) { return tick > 0; })) {
+        return "handling of a meal";
+    }
+    if (state.crates.size() != parameters.crate_count || !std::ranges::all_of(state.crates, can_move)) {
+        return "crate";
+    }
+    const auto is_item = [&](const Items::Item& item) {
+        return item.x > 0 && item.x < width && item.y > 0 && item.y < height && item.due_tick <= tick_reachable;
+    };
+    if (state.food.size() != plan.food_count || state.poison.size() != plan.poison_count ||
+        !std::ranges::all_of(state.food, is_item) || !std::ranges::all_of(state.poison, is_item)) {
+        return "item";
+    }
+    const auto genes = static_cast<std::size_t>(bred.genes.rows());
+    return are_latest_births(state.latest_born[0], genes) && are_latest_births(state.latest_born[1], genes)
+               ? nullptr
+               : "latest birth";
+}
+
+} // namespace evod::simulation
