@@ -16,10 +16,7 @@ Progress advance(Progress progress, const GenerationResult& result) {
             .last_died_out = result.died_out};
 }
 
-bool has_died_out(const LivingAtEnd& living, const Parameters& parameters, bool has_births) {
-    if (!has_births) {
-        return living.prey + living.predators == 0;
-    }
+bool has_died_out(const LivingSpecies& living, const Parameters& parameters) {
     return living.prey == 0 || (parameters.stop_at_extinction && living.predators_have_come && living.predators == 0);
 }
 

@@ -65,18 +65,15 @@ TEST(Termination, Extinction) {
     EXPECT_FALSE(advance(died, {.best_fitness = 1, .died_out = false}).last_died_out);
 }
 
-TEST(Termination, ExtinctionOfAGenerationOrASpecies) {
-    const LivingAtEnd none{0, 0, true}, prey{3, 0, true}, predators{0, 3, true}, before_predators{3, 0, false};
+TEST(Termination, ExtinctionOfASpecies) {
+    const LivingSpecies none{0, 0, true}, prey{3, 0, true}, predators{0, 3, true}, before_predators{3, 0, false};
     Parameters parameters;
     for (const bool stops : {false, true}) {
         parameters.stop_at_extinction = stops;
-        EXPECT_TRUE(has_died_out(none, parameters, false));
-        EXPECT_FALSE(has_died_out(prey, parameters, false));
-        EXPECT_FALSE(has_died_out(predators, parameters, false));
-        EXPECT_TRUE(has_died_out(none, parameters, true));
-        EXPECT_TRUE(has_died_out(predators, parameters, true));
-        EXPECT_EQ(has_died_out(prey, parameters, true), stops);
-        EXPECT_FALSE(has_died_out(before_predators, parameters, true));
+        EXPECT_TRUE(has_died_out(none, parameters));
+        EXPECT_TRUE(has_died_out(predators, parameters));
+        EXPECT_EQ(has_died_out(prey, parameters), stops);
+        EXPECT_FALSE(has_died_out(before_predators, parameters));
     }
 }
 
