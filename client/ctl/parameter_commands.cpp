@@ -40,9 +40,11 @@ const v1::ParameterState* find(const v1::ParameterSet& parameters, const std::st
 }
 
 /// Returns when a value that waits takes effect: "after the next reset".
-std::string start_of_pending(const std::string& name, const Registry& registry) {
-    const auto* description = registry.find(name);
-    const auto effect = description == nullptr ? v1::PARAMETER_EFFECT_NEXT_GENERATION : description->effect();
+std::string start_of_pending(const v1::ParameterState& state, const Registry& registry) {
+    const auto* description = registry.find(state.name());
+    const auto effect = state.has_effect()       ? state.effect()
+                        : description == nullptr ? v1::PARAMETER_EFFECT_NEXT_GENERATION
+                                                 : description->effect();
     return effect == v1::PARAMETER_EFFECT_RESET       ? "after the next reset"
            : effect == v1::PARAMETER_EFFECT_NEXT_TICK ? "from the next tick"
                                                       : "from the next generation";
@@ -50,10 +52,9 @@ std::string start_of_pending(const std::string& name, const Registry& registry) 
 
 /// Formats what `set` has done: "mutation_chance=0.05", or "fitness: gene_sum after the next reset (now life)".
 std::string changed_line_of(const v1::ParameterState& state, const Registry& registry) {
-    return state.has_pending()
-               ? state.name() + ": " + to_text(state.pending()) + " " + start_of_pending(state.name(), registry) +
-                     " (now " + to_text(state.value()) + ")\n"
-               : state.name() + "=" + to_text(state.value()) + "\n";
+    return state.has_pending() ? state.name() + ": " + to_text(state.pending()) + " " +
+                                     start_of_pending(state, registry) + " (now " + to_text(state.value()) + ")\n"
+                               : state.name() + "=" + to_text(state.value()) + "\n";
 }
 
 /// Formats the value of a parameter: "mutation_chance=0.05", followed by its pending and scheduled values, as
@@ -61,7 +62,7 @@ std::string changed_line_of(const v1::ParameterState& state, const Registry& reg
 std::string line_of(const v1::ParameterState& state, const Registry& registry, const v1::ParameterSet& set) {
     std::string coming;
     if (state.has_pending()) {
-        coming = to_text(state.pending()) + " " + start_of_pending(state.name(), registry);
+        coming = to_text(state.pending()) + " " + start_of_pending(state, registry);
     }
     for (const auto& scheduled : set.schedule()) {
         if (scheduled.name() == state.name()) {

@@ -53,14 +53,22 @@ std::vector<Range> in_order_of_registry(const std::map<std::string, Range>& rang
 
 const std::vector<Range>& default_ranges() {
     static const std::vector<Range> all = [] {
-        // Together: at most 4,000 organisms with 106 genes, and with scale_with_population fifty times as many items as
-        // the ranges of food and poison say.
+        // Together, without births and predators: at most 4,000 organisms with 106 genes, and with
+        // scale_with_population fifty times as many items as the ranges of food and poison say.
         const std::map<std::string, std::pair<std::optional<double>, std::optional<double>>> limits = {
-            {"population_size", {{}, 500}},     {"island_count", {{}, 8}},
-            {"island_width_px", {{}, 4000}},    {"island_height_px", {{}, 4000}},
-            {"food_count", {{}, 2000}},         {"poison_count", {{}, 2000}},
-            {"reference_population", {10, {}}}, {"free_genes", {{}, 100}},
-            {"generation_s", {1, {}}},          {"tick_s", {0.004, {}}}};
+            {"population_size", {{}, 500}},
+            {"island_count", {{}, 8}},
+            {"predator_count", {{}, 500}},
+            {"population_max", {{}, 10'000}},
+            {"predator_population_max", {{}, 10'000}},
+            {"island_width_px", {{}, 4000}},
+            {"island_height_px", {{}, 4000}},
+            {"food_count", {{}, 2000}},
+            {"poison_count", {{}, 2000}},
+            {"reference_population", {10, {}}},
+            {"free_genes", {{}, 100}},
+            {"generation_s", {1, {}}},
+            {"tick_s", {0.004, {}}}};
         std::map<std::string, Range> ranges;
         for (const auto& [name, limit] : limits) {
             const ParameterDescription* parameter = parameters::find_parameter(name);

@@ -1,6 +1,7 @@
 // `evod compare`: runs several worlds, or a world and its controls, with the same seeds, and tests the differences.
 #include "proto/command_line/command.h"
 #include "proto/files/unfinished_file.h"
+#include "server/commands/colony_report.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/comparison_report.h"
@@ -124,11 +125,14 @@ bool write_plot(const std::string& path, const ComparisonPlan& plan, std::span<c
     const bool by_default = world.fitness == parameters::FitnessFunction::Life && world.fitness_per_second == 1 &&
                             world.fitness_per_health == 1 && world.fitness_per_food == 0 &&
                             world.fitness_per_poison == 0;
-    const auto drawn =
-        draw_curves(curves.path(), plan.arms[0].name + (plan.controls.empty() ? " and others" : " and its controls"),
-                    "mean fitness of " + std::to_string(courses[0].size()) +
-                        " runs with the same seeds; bands: 95 % confidence interval of that mean",
-                    by_default ? "mean fitness (seconds lived + health at the end)" : "mean fitness", path);
+    const auto drawn = draw_curves(
+        curves.path(), plan.arms[0].name + (plan.controls.empty() ? " and others" : " and its controls"),
+        (plan.has_births() ? "mean number of prey in " : "mean fitness of ") + std::to_string(courses[0].size()) +
+            " runs with the same seeds; bands: 95 % confidence interval of that mean",
+        plan.has_births() ? "living prey"
+        : by_default      ? "mean fitness (seconds lived + health at the end)"
+                          : "mean fitness",
+        path);
     if (!drawn) {
         fail("--plot: " + to_text(drawn.error()));
     }
@@ -139,8 +143,21 @@ bool write_plot(const std::string& path, const ComparisonPlan& plan, std::span<c
 std::string heading_of(const ComparisonPlan& plan, std::uint32_t replicates) {
     const std::string generations = std::to_string(plan.generations);
     return plan.arms[0].name + ": " + std::to_string(replicates) + " replicates of " + generations +
-           " generations, from seed " + std::to_string(plan.seed.value) + "\nrise: mean fitness of generation " +
-           generations + " minus that of generation 1\n\n";
+           (plan.has_births() ? " intervals" : " generations") + ", from seed " + std::to_string(plan.seed.value) +
+           (plan.has_births()
+                ? "\nlived: intervals at whose end all species lived, mean of the runs\n\n"
+                : "\nrise: mean fitness of generation " + generations + " minus that of generation 1\n\n");
+}
+
+/// Adds to the result about an arm of worlds with births: the intervals that each run lived, and its species.
+void add_persistence(std::span<const Course> courses, boost::json::object& world) {
+    boost::json::array lived, species;
+    for (const Course& course : courses) {
+        lived.push_back(experiments::outcome_of(course));
+        species.push_back(persistence_object(experiments::species_of(course)));
+    }
+    world["lived"] = std::move(lived);
+    world["persistence"] = std::move(species);
 }
 
 /// The result for programs.
@@ -152,7 +169,7 @@ boost::json::object result_object(const ComparisonPlan& plan, std::span<const st
     boost::json::array worlds, not_run, differences;
     for (std::size_t arm = 0; arm < courses.size(); ++arm) {
         const Rise rise = rise_of_arm(plan.arms[arm], courses[arm]);
-        worlds.push_back(
+        boost::json::object world(
             {{"name", plan.arms[arm].name},
              {"first", rise.first},
              {"last", rise.last},
@@ -161,6 +178,10 @@ boost::json::object result_object(const ComparisonPlan& plan, std::span<const st
              {"rise_high", rise.interval.high},
              {"extinct", rise.extinct},
              {"changes", experiments::changes_between(plan.arms[0].parameters, plan.arms[arm].parameters)}});
+        if (plan.has_births()) {
+            add_persistence(courses[arm], world);
+        }
+        worlds.push_back(std::move(world));
     }
     for (const experiments::Control& control : plan.controls) {
         if (!control.cannot_differ.empty()) {
@@ -214,7 +235,7 @@ int compare(const CompareOptions& options) {
         return exit_interrupted;
     }
     const int decimals = decimals_for(*courses);
-    std::string text = rises_text(*plan, *courses, decimals) + "\n";
+    std::string text = outcomes_text(*plan, *courses, decimals) + "\n";
     std::vector<experiments::Finding> findings;
     if (plan->arms.size() > 1) {
         findings = experiments::find_differences(*courses, plan->seed);
@@ -254,14 +275,15 @@ void add_compare_command(command_line::Command& app) {
         .count(0, compared_max);
     command.add_flag("--controls", &request.controls,
                      "Compare the world with its controls: random selection, no mutation, harmless poison and shuffled "
-                     "fitness");
+                     "fitness; a world with births: no mutation and unselected parents");
     command.add_option("--replicates", &options.replicates, "Number of runs of each world, each with its own seed")
         .check(command_line::WholeNumber{2, 10'000})
         .show_default();
     command
         .add_option("--generations", &request.generations,
                     "Number of generations of each run; default: the generation_limit of the first file, or " +
-                        std::to_string(experiments::default_generations) + ". No other criterion ends a run")
+                        std::to_string(experiments::default_generations) +
+                        ". No other criterion ends a run, but the extinction of the prey of a world with births")
         .check(command_line::WholeNumber{2, 1'000'000});
     command
         .add_option("--seed", &request.seed,

@@ -1,5 +1,6 @@
 #include "server/commands/comparison_report.h"
 
+#include "server/commands/colony_report.h"
 #include "server/experiments/verdict.h"
 
 #include <algorithm>
@@ -11,21 +12,6 @@ namespace evod::commands {
 namespace {
 
 using namespace experiments;
-
-template <class... Values>
-std::string formatted(const char* format, Values... values) {
-    std::string text(static_cast<std::size_t>(std::snprintf(nullptr, 0, format, values...)), '\0');
-    std::snprintf(text.data(), text.size() + 1, format, values...);
-    return text;
-}
-
-int name_width_of(const ComparisonPlan& plan) {
-    std::size_t width = 16;
-    for (const Arm& arm : plan.arms) {
-        width = std::max(width, arm.name.size());
-    }
-    return static_cast<int>(width);
-}
 
 std::string interval_text(const Interval& interval, int decimals) {
     return signed_text(interval.low, decimals) + " to " + signed_text(interval.high, decimals);
@@ -54,11 +40,14 @@ std::string conclusion_about(const Arm& world, const Arm& other, const Finding& 
                              int decimals) {
     const std::string by = signed_text(std::abs(finding.mean), decimals).substr(finding.mean != 0 ? 1 : 0);
     const std::string p = formatted(" (adjusted p = %.2g).", finding.adjusted_p);
+    const bool has_births = parameters::has_births(world.parameters);
     switch (judge(finding, tests)) {
     case Judgement::Above:
-        return world.name + " rises more than " + other.name + ", by " + by + p;
+        return world.name + (has_births ? " lives longer than " : " rises more than ") + other.name + ", by " + by +
+               (has_births ? " intervals" : "") + p;
     case Judgement::Below:
-        return world.name + " rises less than " + other.name + ", by " + by + p;
+        return world.name + (has_births ? " lives less long than " : " rises less than ") + other.name + ", by " + by +
+               (has_births ? " intervals" : "") + p;
     case Judgement::CannotBeShown:
         return "There are too few replicates to show a difference between " + world.name + " and " + other.name + ".";
     case Judgement::NotShown:
@@ -70,6 +59,9 @@ std::string conclusion_about(const Arm& world, const Arm& other, const Finding& 
 } // namespace
 
 int decimals_for(std::span<const std::vector<Course>> courses) {
+    if (courses.front().front().front().species[0].has_come) {
+        return 1; // intervals
+    }
     double greatest = 0;
     for (const std::vector<Course>& of_arm : courses) {
         for (const Course& course : of_arm) {
@@ -94,7 +86,10 @@ Rise rise_of_arm(const Arm& arm, std::span<const Course> courses) {
     return {mean_of(first), mean_of(last), mean_of(rises), student_interval(rises), extinct};
 }
 
-std::string rises_text(const ComparisonPlan& plan, std::span<const std::vector<Course>> courses, int decimals) {
+std::string outcomes_text(const ComparisonPlan& plan, std::span<const std::vector<Course>> courses, int decimals) {
+    if (plan.has_births()) {
+        return persistence_table(plan, courses);
+    }
     const int name_width = name_width_of(plan);
     std::string text = formatted("%-*s %9s %9s %9s  %-20s %7s  %s\n", name_width, "world", "first", "last", "rise",
                                  "95 % interval", "extinct", "changes");
@@ -111,9 +106,10 @@ std::string rises_text(const ComparisonPlan& plan, std::span<const std::vector<C
 
 std::string findings_text(const ComparisonPlan& plan, std::span<const Finding> findings, int decimals) {
     const int name_width = name_width_of(plan);
-    std::string text =
-        formatted("rise of %s minus the rise of the other world, seed by seed\n%-*s %10s  %-20s %7s %9s %9s\n",
-                  plan.arms[0].name.c_str(), name_width, "other", "difference", "95 % interval", "g", "p", "adjusted");
+    std::string text = formatted("%s of %s minus %s of the other world, seed by seed\n%-*s %10s  %-20s %7s %9s %9s\n",
+                                 plan.has_births() ? "intervals lived" : "rise", plan.arms[0].name.c_str(),
+                                 plan.has_births() ? "those" : "the rise", name_width, "other", "difference",
+                                 "95 % interval", "g", "p", "adjusted");
     for (std::size_t i = 0; i < findings.size(); ++i) {
         const Finding& finding = findings[i];
         text += formatted(
@@ -132,6 +128,9 @@ std::string conclusions_text(const ComparisonPlan& plan, std::span<const std::ve
             text += conclusion_about(plan.arms[0], plan.arms[i + 1], findings[i], findings.size(), decimals) + "\n";
         }
         return text;
+    }
+    if (plan.has_births()) {
+        return persistence_verdict(plan, courses, findings);
     }
     std::vector<ControlResult> weighed;
     std::size_t next = 0; // index of the next finding; controls that cannot differ have no finding

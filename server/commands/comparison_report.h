@@ -12,7 +12,8 @@
 
 namespace evod::commands {
 
-/// Returns the number of decimals with which a table shows mean fitnesses, depending on the largest of them.
+/// Returns the number of decimals with which a table shows mean fitnesses, depending on the largest of them, or
+/// numbers of intervals of worlds with births.
 int decimals_for(std::span<const std::vector<experiments::Course>> courses);
 
 /// The fitness of an arm over its replicates.
@@ -24,11 +25,12 @@ struct Rise {
 };
 Rise rise_of_arm(const experiments::Arm& arm, std::span<const experiments::Course> courses);
 
-/// Formats a table with the rise in mean fitness of every arm, that is, of each compared world.
+/// Formats a table with the rise in mean fitness of every arm, that is, of each compared world; of worlds with births,
+/// with their persistence.
 ///
 /// courses  shape (arms, replicates).
-std::string rises_text(const experiments::ComparisonPlan& plan,
-                       std::span<const std::vector<experiments::Course>> courses, int decimals);
+std::string outcomes_text(const experiments::ComparisonPlan& plan,
+                          std::span<const std::vector<experiments::Course>> courses, int decimals);
 /// Formats a table that compares the first arm with every other arm.
 ///
 /// findings  shape (arms − 1).

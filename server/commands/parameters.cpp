@@ -5,9 +5,11 @@
 #include "server/parameters/model_parameters.h"
 
 #include <iostream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 namespace evod::commands {
 namespace {
@@ -24,14 +26,23 @@ const char* effect_text(base::Effect effect) {
     return "";
 }
 
+/// "`food_count`, `selection`"
+std::string names_of(std::span<const std::string_view> names) {
+    std::string text;
+    for (const std::string_view name : names) {
+        text += (text.empty() ? "`" : ", `") + std::string{name} + "`";
+    }
+    return text;
+}
+
 std::string most_used_names() {
-    std::string names;
+    std::vector<std::string_view> names;
     for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
         if (description.is_most_used) {
-            names += (names.empty() ? "`" : ", `") + std::string{description.name} + "`";
+            names.push_back(description.name);
         }
     }
-    return names;
+    return names_of(names);
 }
 
 /// A Markdown table for each topic, with one row per parameter.
@@ -48,6 +59,10 @@ std::string parameter_list() {
         "reset. Each value holds from the first tick of its generation. A breeding parameter that is listed for\n"
         "generation N therefore first affects the breeding of generation N + 1. Before the first listed\n"
         "generation, the parameter has its default value.\n\n"
+        "In worlds with births (`reproduction`), these parameters take effect at a reset, and the file gives each of\n"
+        "them one value: " +
+        names_of(parameters::kept_with_births()) +
+        ".\n\n"
         "Genes are 32-bit floats with about seven significant digits: a gene of 1,000,000 has steps of 0.06.\n\n"
         "Users change these parameters most often: " +
         most_used_names() + ".\n";
@@ -64,7 +79,8 @@ std::string parameter_list() {
     }
     text += "\n## Choices\n\n| parameter | choice | meaning |\n|---|---|---|\n";
     for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
-        if (const auto* choice = std::get_if<parameters::ChoiceParameter>(&description.kind)) {
+        const auto* choice = std::get_if<parameters::ChoiceParameter>(&description.kind);
+        if (choice != nullptr && !description.name.starts_with("predator_")) { // those have the choices of the prey's
             for (const std::string_view name : choice->names) {
                 text += "| `" + std::string{description.name} + "` | " + std::string{name} + " | " +
                         std::string{parameters::choice_help(description.name, name)} + " |\n";

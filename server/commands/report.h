@@ -8,8 +8,10 @@
 namespace evod::commands {
 
 /// Formats the heading or one row of the table. The columns have fixed widths. The text does not end with a newline.
-std::string table_heading(bool with_island);
-std::string table_row(const simulation::GenerationStatistics& statistics, bool with_island);
+///
+/// is_colony  whether the row has the numbers of births, of prey that died of predators and age, and of predators.
+std::string table_heading(bool with_island, bool is_colony = false);
+std::string table_row(const simulation::GenerationStatistics& statistics, bool with_island, bool is_colony = false);
 
 /// Formats a speed: "0.3 × real time", "7269 × real time".
 std::string real_time_text(double factor);

@@ -1,6 +1,7 @@
 // `evod run`: runs one experiment from beginning to end without a network.
 #include "proto/command_line/command.h"
 #include "proto/files/unfinished_file.h"
+#include "server/commands/colony_report.h"
 #include "server/commands/commands.h"
 #include "server/commands/common_options.h"
 #include "server/commands/interrupt.h"
@@ -32,6 +33,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -191,7 +193,7 @@ void print_summary(const simulation::World& world, const ComputationTime& cost) 
 }
 
 /// Prints why the run ended. Returns the exit status.
-int print_outcome(evolution::Outcome outcome) {
+int print_outcome(evolution::Outcome outcome, bool has_births) {
     switch (outcome) {
     case evolution::Outcome::TargetFitness:
         std::puts("ended: target_fitness was reached");
@@ -203,7 +205,7 @@ int print_outcome(evolution::Outcome outcome) {
         std::puts("ended: the best fitness did not improve for stagnation_limit generations");
         return exit_stagnated;
     case evolution::Outcome::Extinction:
-        std::puts("ended: all organisms died");
+        std::puts(has_births ? "ended: a species died out" : "ended: all organisms died");
         return exit_extinct;
     case evolution::Outcome::Running:
         break;
@@ -213,20 +215,28 @@ int print_outcome(evolution::Outcome outcome) {
 }
 
 /// Prints for programs why and how the run ended. Returns the exit status.
-int print_end_as_json(const simulation::World& world, const ComputationTime& cost) {
+///
+/// intervals  of a world with births; otherwise empty.
+int print_end_as_json(const simulation::World& world, const ComputationTime& cost,
+                      std::span<const experiments::SpeciesOfInterval> intervals) {
     const evolution::Outcome outcome = world.outcome();
     const bool is_running = outcome == evolution::Outcome::Running;
-    print_json({{"seed", world.seed().value},
-                {"outcome", is_running ? std::string{"interrupted"} : std::string{experiments::name_of(outcome)}},
-                {"generations", world.moment().generation - (world.generation_over() ? 0 : 1)},
-                {"ticks", world.moment().tick},
-                {"simulated_s", world.moment().simulated_s},
-                {"state_hash", base::to_text(world.hash())},
-                {"start_s", cost.start_s},
-                {"tick_s", cost.tick_s},
-                {"turnover_s", cost.turnover_s},
-                {"exchange_s", cost.exchange_s},
-                {"organism_ticks", cost.organism_ticks}});
+    boost::json::object end(
+        {{"seed", world.seed().value},
+         {"outcome", is_running ? std::string{"interrupted"} : std::string{experiments::name_of(outcome)}},
+         {"generations", world.moment().generation - (world.generation_over() ? 0 : 1)},
+         {"ticks", world.moment().tick},
+         {"simulated_s", world.moment().simulated_s},
+         {"state_hash", base::to_text(world.hash())},
+         {"start_s", cost.start_s},
+         {"tick_s", cost.tick_s},
+         {"turnover_s", cost.turnover_s},
+         {"exchange_s", cost.exchange_s},
+         {"organism_ticks", cost.organism_ticks}});
+    if (!intervals.empty()) {
+        end["persistence"] = persistence_object(intervals);
+    }
+    print_json(end);
     return is_running                                  ? exit_interrupted
            : outcome == evolution::Outcome::Stagnation ? exit_stagnated
            : outcome == evolution::Outcome::Extinction ? exit_extinct
@@ -234,8 +244,12 @@ int print_end_as_json(const simulation::World& world, const ComputationTime& cos
 }
 
 /// Prints why and how the run ended. Returns the exit status.
-int print_end(const simulation::World& world, const ComputationTime& cost) {
-    const int status = print_outcome(world.outcome());
+///
+/// intervals  of a world with births; otherwise empty.
+int print_end(const simulation::World& world, const ComputationTime& cost,
+              std::span<const experiments::SpeciesOfInterval> intervals) {
+    const int status = print_outcome(world.outcome(), parameters::has_births(world.parameters().active));
+    std::fputs(persistence_text(intervals).c_str(), stdout);
     print_summary(world, cost);
     std::fflush(stdout); // an mpirun that was interrupted kills its processes while they leave MPI
     return status;
@@ -248,11 +262,16 @@ class Output {
                             const Recording& recording) {
         gene_names_ = replay::gene_names_of(experiment.parameters);
         several_islands_ = experiment.parameters.island_count > 1;
+        has_births_ = parameters::has_births(experiment.parameters);
+        is_colony_ = simulation::is_colony(experiment.parameters);
         csv_path_ = options.csv;
         every_ = options.every;
         json_ = options.json;
-        if (auto opened = open_csv(recording); !opened) {
+        if (auto opened = open_csv(); !opened) {
             return opened;
+        }
+        if (auto read = read_stored(recording); !read) {
+            return read;
         }
         if (json_) {
             return {};
@@ -266,7 +285,7 @@ class Output {
         if (recording && recording->stored() == experiments::Stored::Part) {
             std::printf("continues at generation %llu\n", static_cast<unsigned long long>(recording->continues_at()));
         }
-        std::puts(table_heading(several_islands_).c_str());
+        std::puts(table_heading(several_islands_, is_colony_).c_str());
         std::fflush(stdout);
         return {};
     }
@@ -274,12 +293,13 @@ class Output {
     ///
     /// last  whether the run ends with this generation.
     base::Result<void> write(const simulation::GenerationRows& rows, bool last) {
+        follow_species(rows);
         if (!last && rows.front().generation % every_ != 0) {
             return {};
         }
         for (const simulation::GenerationStatistics& statistics : rows) {
             if (!json_) {
-                std::puts(table_row(statistics, several_islands_).c_str());
+                std::puts(table_row(statistics, several_islands_, is_colony_).c_str());
             }
         }
         std::fflush(stdout);
@@ -287,14 +307,16 @@ class Output {
         return flush_csv();
     }
 
+    /// The species of every interval of the run, if the world has births.
+    std::span<const experiments::SpeciesOfInterval> intervals() const { return intervals_; }
+
     /// Gives the CSV file its name. Called at the end of the run, also of one that was interrupted.
     base::Result<void> finish() {
         return !csv_ || csv_->finish() ? base::Result<void>{} : cannot_write_csv(std::strerror(errno));
     }
 
   private:
-    /// Creates the CSV file, and writes the rows of the stored generations.
-    base::Result<void> open_csv(const Recording& recording) {
+    base::Result<void> open_csv() {
         if (csv_path_.empty()) {
             return {};
         }
@@ -304,20 +326,26 @@ class Output {
         }
         errno = 0;
         table_.emplace(csv_->stream(), replay::Table::Format::Csv, replay::statistics_columns(gene_names_));
-        if (!csv_->stream().flush()) {
-            return cannot_write_csv(std::strerror(errno));
+        return csv_->stream().flush() ? base::Result<void>{} : cannot_write_csv(std::strerror(errno));
+    }
+    /// Writes the rows of the stored generations to the CSV file.
+    base::Result<void> read_stored(const Recording& recording) {
+        if (!recording || (!table_ && !has_births_)) {
+            return {};
         }
-        if (recording) {
-            if (auto read = recording->read_statistics([&](const auto& generation) {
-                    if (generation.front().generation % every_ == 0 || is_last_stored(*recording, generation)) {
-                        add_to_csv(generation);
-                    }
-                });
-                !read) {
-                return read;
+        auto read = recording->read_statistics([&](const std::vector<simulation::GenerationStatistics>& generation) {
+            follow_species(generation);
+            if (generation.front().generation % every_ == 0 || is_last_stored(*recording, generation)) {
+                add_to_csv(generation);
             }
+        });
+        return read ? flush_csv() : read;
+    }
+    void follow_species(const std::vector<simulation::GenerationStatistics>& generation) {
+        if (has_births_) {
+            intervals_.push_back(experiments::species_of(
+                generation, intervals_.empty() ? experiments::SpeciesOfInterval{} : intervals_.back()));
         }
-        return flush_csv();
     }
     /// Whether a whole run ends with this generation.
     static bool is_last_stored(const experiments::RunRecording& recording,
@@ -340,7 +368,8 @@ class Output {
     }
 
     std::vector<std::string> gene_names_;
-    bool several_islands_ = false, json_ = false;
+    std::vector<experiments::SpeciesOfInterval> intervals_;
+    bool several_islands_ = false, json_ = false, has_births_ = false, is_colony_ = false;
     std::uint32_t every_ = 1;
     std::string csv_path_;
     std::optional<files::UnfinishedFile> csv_;
@@ -524,7 +553,8 @@ int run(const RunOptions& options, const SharedWork& shared) {
         return fail(simulation.written.error());
     }
     cost.exchange_s = shared.processes.exchange_s();
-    return options.json ? print_end_as_json(simulation.world, cost) : print_end(simulation.world, cost);
+    return options.json ? print_end_as_json(simulation.world, cost, output.intervals())
+                        : print_end(simulation.world, cost, output.intervals());
 }
 
 /// The options that decide what is computed, as text. share_worlds() compares it between the processes.

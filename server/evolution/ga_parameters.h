@@ -127,7 +127,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Locomotion, "newtonian", "kinematic")
     FLAG(stop_at_target_fitness, false, NextTick, "Whether the run ends when an organism reaches target_fitness.")     \
     REAL(target_fitness, 500, -1e12, 1e12, "fitness", NextTick, "Fitness at which the run ends if stop_at_target_fitness is on.") \
     COUNT(stagnation_limit, 0, 0, count_max, "generations", NextTick, "The run ends after this many generations without a new best fitness; 0 means never.") \
-    FLAG(stop_at_extinction, false, NextTick, "Whether the run ends with a generation in which every organism died.")  \
+    FLAG(stop_at_extinction, false, NextTick, "Whether the run ends with a generation in which every organism died. With births, it always ends with an interval after which no prey lives; and if this is on, also with one after which no predator lives.")  \
     TOPIC("Migration")                                                                                                 \
     CHOICE(migration, Topology, None, NextTick, "Which islands exchange migrants.")                                    \
     COUNT(migration_epoch, 10, 1, count_max, "generations", NextTick, "Number of generations from one migration to the next.")               \

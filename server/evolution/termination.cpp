@@ -16,14 +16,18 @@ Progress advance(Progress progress, const GenerationResult& result) {
             .last_died_out = result.died_out};
 }
 
-Outcome outcome(const Progress& progress, const Parameters& parameters) {
+bool has_died_out(const LivingSpecies& living, const Parameters& parameters) {
+    return living.prey == 0 || (parameters.stop_at_extinction && living.predators_have_come && living.predators == 0);
+}
+
+Outcome outcome(const Progress& progress, const Parameters& parameters, bool has_births) {
     if (progress.generations == 0) {
         return Outcome::Running;
     }
     if (parameters.stop_at_target_fitness && progress.last_best_fitness >= parameters.target_fitness) {
         return Outcome::TargetFitness;
     }
-    if (parameters.stop_at_extinction && progress.last_died_out) {
+    if ((parameters.stop_at_extinction || has_births) && progress.last_died_out) {
         return Outcome::Extinction;
     }
     if (parameters.stagnation_limit > 0 && progress.stagnant >= parameters.stagnation_limit) {

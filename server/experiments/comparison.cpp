@@ -31,6 +31,20 @@ double rise_of(const Course& course) {
     return course.back().mean - course.front().mean;
 }
 
+std::vector<SpeciesOfInterval> species_of(const Course& course) {
+    std::vector<SpeciesOfInterval> species;
+    for (const GenerationFitness& interval : course) {
+        species.push_back(interval.species);
+    }
+    return species;
+}
+
+double outcome_of(const Course& course) {
+    EVOD_ASSERT(!course.empty());
+    const bool has_births = course.front().species[0].has_come;
+    return has_births ? static_cast<double>(intervals_lived(species_of(course))) : rise_of(course);
+}
+
 std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> arms, const RunsWanted& wanted) {
     EVOD_ASSERT(!arms.empty());
     const std::size_t generations = arms.front().parameters.generation_limit;
@@ -41,7 +55,7 @@ std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> ar
     std::vector<std::vector<Course>> courses(arms.size(), std::vector<Course>(wanted.replicates));
     const std::size_t trials = arms.size() * wanted.replicates;
     std::mutex progress_mutex;
-    std::size_t generations_done = 0;
+    std::size_t generations_done = 0, trials_done = 0;
     for_each_trial(
         trials, wanted.jobs,
         [&](std::size_t trial) {
@@ -59,14 +73,23 @@ std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> ar
                 if (!world.generation_over()) {
                     continue;
                 }
-                course.push_back(fitness_of(world.history().back()));
+                const simulation::GenerationRows& rows = world.history().back();
+                GenerationFitness generation = fitness_of(rows);
+                if (parameters::has_births(arms[arm].parameters)) {
+                    const std::vector<simulation::GenerationStatistics>& islands = rows;
+                    generation.species =
+                        species_of(islands, course.empty() ? SpeciesOfInterval{} : course.back().species);
+                }
+                course.push_back(generation);
+                const bool is_over = world.outcome() != evolution::Outcome::Running;
                 const std::scoped_lock lock{progress_mutex};
-                ++generations_done;
+                trials_done += is_over ? 1 : 0;
+                generations_done += is_over ? generations + 1 - course.size() : 1;
                 wanted.progress(static_cast<double>(generations_done) / static_cast<double>(trials * generations));
             }
         },
         wanted.stopped);
-    if (generations_done < trials * generations) {
+    if (trials_done < trials) {
         return std::nullopt;
     }
     return courses;
@@ -79,7 +102,7 @@ std::vector<Finding> find_differences(std::span<const std::vector<Course>> cours
     for (const std::vector<Course>& other : courses.subspan(1)) {
         Finding finding;
         for (std::size_t replicate = 0; replicate < other.size(); ++replicate) {
-            finding.differences.push_back(rise_of(courses[0][replicate]) - rise_of(other[replicate]));
+            finding.differences.push_back(outcome_of(courses[0][replicate]) - outcome_of(other[replicate]));
         }
         finding.mean = mean_of(finding.differences);
         finding.interval = student_interval(finding.differences);

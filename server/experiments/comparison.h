@@ -1,4 +1,5 @@
-// Comparison: runs several worlds with the same seeds and tests whether their rises in fitness differ.
+// Comparison: runs several worlds with the same seeds and tests whether they differ: worlds whose generations are bred,
+// in their rises in fitness; worlds with births, in the numbers of intervals for which their species live.
 //
 // Each compared world is an arm; each seed is a replicate. The rise of a run is the mean fitness of its organisms in
 // the last generation minus the mean fitness in the first one. With the same seed, all arms begin with the same
@@ -10,6 +11,7 @@
 
 #include "server/base/random.h"
 #include "server/experiments/paired_test.h"
+#include "server/experiments/persistence.h"
 #include "server/parameters/model_parameters.h"
 #include "server/parameters/schedule.h"
 
@@ -33,11 +35,17 @@ struct Arm {
 struct GenerationFitness {
     double mean = 0, best = 0;
     std::uint64_t organism_count = 0, alive_count = 0;
+    SpeciesOfInterval species = {}; // only of worlds with births
     friend bool operator==(const GenerationFitness&, const GenerationFitness&) = default;
 };
-using Course = std::vector<GenerationFitness>; // one run, by generation; the first element is generation 1
+/// One run, by generation; the first element is generation 1. A course of a world with births ends with the prey.
+using Course = std::vector<GenerationFitness>;
 
 double rise_of(const Course& course);
+/// The species of a course of a world with births.
+std::vector<SpeciesOfInterval> species_of(const Course& course);
+/// What is compared: rise_of(), or intervals_lived() of a course of a world with births.
+double outcome_of(const Course& course);
 
 struct RunsWanted {
     base::Seed seed;
@@ -49,13 +57,13 @@ struct RunsWanted {
 
 /// Runs every arm with every seed.
 ///
-/// returns  shape (arms, replicates); each element has generation_limit generations. nullopt after stopped() returned
-///          true.
+/// returns  shape (arms, replicates); each element has generation_limit generations, or fewer of a world with births
+///          without prey. nullopt after stopped() returned true.
 std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> arms, const RunsWanted& wanted);
 
 /// The difference between the first arm and one other arm.
 struct Finding {
-    std::vector<double> differences; // by replicate: rise of the first arm minus rise of the other arm
+    std::vector<double> differences; // by replicate: outcome_of() the first arm minus that of the other arm
     double mean = 0;
     Interval interval;                 // 95 % confidence interval of the mean difference
     std::optional<double> effect_size; // result of hedges_g()

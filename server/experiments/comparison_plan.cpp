@@ -56,7 +56,9 @@ Result<Arm> arm_of(const NamedExperiment& named, const std::vector<std::string>&
 
 void add_controls(ComparisonPlan& plan) {
     const Arm world = plan.arms[0];
-    for (const ControlKind kind : all_controls) {
+    const std::span<const ControlKind> kinds = plan.has_births() ? std::span<const ControlKind>{controls_of_births}
+                                                                 : std::span<const ControlKind>{all_controls};
+    for (const ControlKind kind : kinds) {
         Control control = control_of(world.parameters, kind);
         if (schedule_affects(world.schedule, kind)) {
             control.cannot_differ.clear();
@@ -100,6 +102,12 @@ Result<ComparisonPlan> plan_comparison(const ComparisonRequest& request) {
         if (!arm) {
             return arm.error();
         }
+        if (!plan.arms.empty() && parameters::has_births(arm->parameters) != plan.has_births()) {
+            return refusal(RefusalCode::InvalidArgument,
+                           experiment.name + ": reproduction differs from that of " + plan.arms[0].name +
+                               ": worlds with births are compared by the intervals that their species live, other "
+                               "worlds by the rise of fitness");
+        }
         plan.arms.push_back(*arm);
     }
     if (request.controls) {
@@ -109,10 +117,16 @@ Result<ComparisonPlan> plan_comparison(const ComparisonRequest& request) {
 }
 
 void write_courses(std::ostream& out, const ComparisonPlan& plan, std::span<const std::vector<Course>> courses) {
-    replay::Table table{
-        out,
-        replay::Table::Format::Csv,
-        {"arm", "replicate", "seed", "generation", "fitness_mean", "fitness_best", "organism_count", "alive_count"}};
+    std::vector<std::string> columns{"arm",          "replicate",    "seed",           "generation",
+                                     "fitness_mean", "fitness_best", "organism_count", "alive_count"};
+    if (plan.has_births()) {
+        for (const std::string species : {"prey", "predators"}) {
+            for (const char* column : {"_alive", "_mean", "_lowest", "_born"}) {
+                columns.push_back(species + column);
+            }
+        }
+    }
+    replay::Table table{out, replay::Table::Format::Csv, columns};
     for (std::size_t arm = 0; arm < courses.size(); ++arm) {
         for (std::size_t replicate = 0; replicate < courses[arm].size(); ++replicate) {
             for (std::size_t i = 0; i < courses[arm][replicate].size(); ++i) {
@@ -124,8 +138,16 @@ void write_courses(std::ostream& out, const ComparisonPlan& plan, std::span<cons
                     .number(generation.mean)
                     .number(generation.best)
                     .number(generation.organism_count)
-                    .number(generation.alive_count)
-                    .end_row();
+                    .number(generation.alive_count);
+                for (const SpeciesInterval& species : generation.species) {
+                    if (plan.has_births()) {
+                        table.number(species.alive_count)
+                            .number(species.count_mean)
+                            .number(species.lowest_count)
+                            .number(species.born_count);
+                    }
+                }
+                table.end_row();
             }
         }
     }
@@ -135,14 +157,16 @@ void write_curves(std::ostream& out, const ComparisonPlan& plan, std::span<const
     replay::Table table{out, replay::Table::Format::Csv, {"arm", "generation", "mean", "low", "high"}};
     for (std::size_t arm = 0; arm < courses.size(); ++arm) {
         for (std::uint32_t i = 0; i < plan.generations; ++i) {
-            std::vector<double> means;
+            std::vector<double> values;
             for (const Course& course : courses[arm]) {
-                means.push_back(course[i].mean);
+                values.push_back(!plan.has_births()  ? course[i].mean
+                                 : i < course.size() ? course[i].species[0].count_mean
+                                                     : 0.0);
             }
-            const Interval interval = student_interval(means);
+            const Interval interval = student_interval(values);
             table.text(plan.arms[arm].name)
                 .number(i + 1)
-                .number(mean_of(means))
+                .number(mean_of(values))
                 .number(interval.low)
                 .number(interval.high)
                 .end_row();

@@ -32,6 +32,9 @@ struct ComparisonPlan {
     std::vector<Control> controls;
     base::Seed seed;
     std::uint32_t generations;
+
+    /// Whether the worlds have births; either all arms have, or none.
+    bool has_births() const { return parameters::has_births(arms[0].parameters); }
 };
 
 /// Loads and validates the experiments, and creates their controls.
@@ -43,7 +46,7 @@ base::Result<ComparisonPlan> plan_comparison(const ComparisonRequest& request);
 void write_courses(std::ostream& out, const ComparisonPlan& plan, std::span<const std::vector<Course>> courses);
 
 /// Writes the data of a plot as CSV: the mean fitness over the replicates, by arm and generation, with its 95 %
-/// confidence interval.
+/// confidence interval; of worlds with births, the mean number of prey in the place of the mean fitness.
 void write_curves(std::ostream& out, const ComparisonPlan& plan, std::span<const std::vector<Course>> courses);
 
 } // namespace evod::experiments

@@ -15,6 +15,10 @@ using parameters::Parameters;
 Parameters with_random_selection(Parameters p) {
     p.selection = SelectionMethod::Random;
     p.elite_count = 0;
+    if (p.predator_count > 0) {
+        p.predator_selection = SelectionMethod::Random;
+        p.predator_elite_count = 0;
+    }
     if (p.population_model == PopulationModel::SteadyState) {
         // Steady state keeps the fittest organisms. The hybrid model keeps the same number of organisms, drawn at
         // random.
@@ -44,15 +48,22 @@ bool has_creep_step(const Parameters& p) {
            can_creep(GeneGroup::Free, p.free_mutation_step);
 }
 
-bool mutates(const Parameters& p) {
+bool mutates_one_species(const Parameters& p) {
     return (p.mutation_chance > 0 && has_creep_step(p)) || p.reset_chance > 0 ||
            (p.scale_chance > 0 && p.scale_range > 0) || p.bit_flip_chance > 0 ||
            (p.rearranging != OrderMutationMethod::None && p.rearrange_chance > 0 &&
             evolution::genes_of(p.mutate_group, p).count > 1);
 }
 
+bool mutates(const Parameters& p) {
+    return mutates_one_species(p) || (p.predator_count > 0 && mutates_one_species(parameters::of_predators(p)));
+}
+
 Parameters without_mutation(Parameters p) {
     p.mutation_chance = 0;
+    if (p.predator_count > 0) {
+        p.predator_mutation_chance = 0;
+    }
     p.reset_chance = 0;
     p.scale_chance = 0;
     p.bit_flip_chance = 0;
@@ -76,14 +87,17 @@ std::string why_nothing_is_selected(const Parameters& p) {
 
 using Names = std::span<const std::string_view>;
 
-constexpr std::string_view random_selection[] = {"selection",      "elite_count", "population_model",  "survivors",
-                                                 "replaced_count", "emigrants",   "immigrants_replace"};
-constexpr std::string_view mutation_off[] = {"mutation_chance", "reset_chance", "scale_chance", "bit_flip_chance",
-                                             "rearranging"};
+constexpr std::string_view random_selection[] = {"selection",          "elite_count",        "population_model",
+                                                 "survivors",          "replaced_count",     "emigrants",
+                                                 "immigrants_replace", "predator_selection", "predator_elite_count"};
+constexpr std::string_view mutation_off[] = {"mutation_chance", "reset_chance", "scale_chance",
+                                             "bit_flip_chance", "rearranging",  "predator_mutation_chance"};
 constexpr std::string_view harmless_poison[] = {"poison_harm", "fitness_per_poison"};
 constexpr std::string_view shuffled_fitness[] = {"shuffle_fitness"};
-constexpr std::string_view mutation_conditions[] = {"mutation_step", "brain_mutation_step", "free_mutation_step",
-                                                    "mutate_group",  "scale_range",         "rearrange_chance"};
+constexpr std::string_view unselected_parents[] = {"shuffle_births"};
+constexpr std::string_view mutation_conditions[] = {
+    "mutation_step", "brain_mutation_step", "free_mutation_step",    "mutate_group",
+    "scale_range",   "rearrange_chance",    "predator_mutation_step"};
 constexpr std::string_view poison_conditions[] = {"poison_count", "population_size", "scale_with_population"};
 
 struct NamesOfControl {
@@ -98,6 +112,8 @@ NamesOfControl names_of(ControlKind kind) {
         return {mutation_off, mutation_conditions};
     case ControlKind::HarmlessPoison:
         return {harmless_poison, poison_conditions};
+    case ControlKind::UnselectedParents:
+        return {unselected_parents, {}};
     case ControlKind::ShuffledFitness:
         break;
     }
@@ -143,6 +159,11 @@ Control control_of(const Parameters& world, ControlKind kind) {
         control.parameters.shuffle_fitness = true;
         control.cannot_differ =
             world.shuffle_fitness ? "shuffle_fitness is already true" : why_nothing_is_selected(world);
+        break;
+    case ControlKind::UnselectedParents:
+        control.name = "unselected_parents";
+        control.parameters.shuffle_births = true;
+        control.cannot_differ = world.shuffle_births ? "shuffle_births is already true" : "";
         break;
     }
     return control;

@@ -14,13 +14,17 @@
 namespace evod::experiments {
 
 enum class ControlKind {
-    RandomSelection, // parents, survivors and migrants are drawn at random
-    MutationOff,     // no gene gets a new value; selection acts only on the genes of the first generation
-    HarmlessPoison,  // poison reduces neither health nor fitness
-    ShuffledFitness, // the same selection pressure, but each organism gets the fitness of another one
+    RandomSelection,   // parents, survivors and migrants are drawn at random
+    MutationOff,       // no gene gets a new value; selection acts only on the genes of the first generation
+    HarmlessPoison,    // poison reduces neither health nor fitness
+    ShuffledFitness,   // the same selection pressure, but each organism gets the fitness of another one
+    UnselectedParents, // with births: children get the genes of parents that are drawn among the latest births
 };
+/// The controls of a world whose generations are bred.
 constexpr ControlKind all_controls[] = {ControlKind::RandomSelection, ControlKind::MutationOff,
                                         ControlKind::HarmlessPoison, ControlKind::ShuffledFitness};
+/// The controls of a world with births.
+constexpr ControlKind controls_of_births[] = {ControlKind::MutationOff, ControlKind::UnselectedParents};
 
 struct Control {
     ControlKind kind;
@@ -40,7 +44,7 @@ bool schedule_affects(const parameters::Schedule& world, ControlKind kind);
 
 /// Makes generation_limit the only termination criterion of the world. Any other criterion would end the compared
 /// worlds after different numbers of generations. An extinct population breeds like any other, according to the
-/// fitness that its organisms reached.
+/// fitness that its organisms reached. Only a world with births ends without prey.
 parameters::Parameters of_fixed_length(parameters::Parameters world, std::uint32_t generations);
 
 /// Removes the termination criteria from the schedule.

@@ -97,7 +97,7 @@ Result<bool> is_over(RunFile& file, std::uint64_t generation, std::uint32_t limi
     const double best = std::ranges::max(*statistics, {}, &simulation::GenerationStatistics::fitness_best).fitness_best;
     const evolution::Progress progress =
         evolution::advance((*opening)->progress, {best, parameters::has_bodies(active) && !lived});
-    return evolution::outcome(progress, active) != evolution::Outcome::Running;
+    return evolution::outcome(progress, active, parameters::has_births(active)) != evolution::Outcome::Running;
 }
 
 } // namespace

@@ -21,6 +21,10 @@ constexpr Sentence sentences[] = {
     {"integrator", "symplectic_euler", "Positions use the new velocities; the energy of a spring stays bounded."},
     {"integrator", "explicit_euler", "Positions use the old velocities; the energy of a spring grows."},
     {"integrator", "backward_euler", "Damping uses the new velocities; it is stable for any tick length."},
+    {"reproduction", "generations", "Each generation is bred from the previous one, whose organisms then end."},
+    {"reproduction", "births", "Organisms with enough health have children while they live; nothing selects but life."},
+    {"births", "sexual", "A child has two parents, which are near each other, and mixes their genes."},
+    {"births", "asexual", "A child has one parent, and its genes with mutations."},
     {"population_model", "hybrid", "The selected organisms stay, and their children fill the other places."},
     {"population_model", "generational", "Children replace all organisms except the elite."},
     {"population_model", "steady_state", "Children replace only the worst organisms."},
@@ -76,6 +80,10 @@ constexpr Sentence sentences[] = {
 } // namespace
 
 std::string_view choice_help(std::string_view parameter, std::string_view choice) {
+    constexpr std::string_view of_predators = "predator_"; // predator_selection has the choices of selection
+    if (parameter.starts_with(of_predators)) {
+        parameter.remove_prefix(of_predators.size());
+    }
     const auto* found = std::ranges::find_if(sentences, [&](const Sentence& sentence) {
         return sentence.parameter == parameter && sentence.choice == choice;
     });

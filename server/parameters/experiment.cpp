@@ -34,6 +34,13 @@ std::optional<std::uint64_t> generation_of(std::string_view key) {
     return valid ? std::optional{generation} : std::nullopt;
 }
 
+/// Returns the parameter whose value is the default of `name` in an experiment file; nullptr if there is none.
+const ParameterDescription* followed_by(std::string_view name) {
+    const auto all = followers();
+    const auto found = std::ranges::find(all, name, &Follower::name);
+    return found == all.end() ? nullptr : find_parameter(found->followed);
+}
+
 /// The values of one parameter by generation.
 class ValuesByGeneration {
   public:
@@ -179,10 +186,10 @@ class ExperimentReader {
         for (const JsonMember* member : unique_members(document_, "", violations_)) {
             read(*member);
         }
-        if (!names_reference_) {
-            const auto population = std::ranges::find(assignments_, "population_size", &Assignment::name);
-            if (population != assignments_.end()) {
-                assignments_.push_back({"reference_population", population->value});
+        for (const Follower& follower : followers()) {
+            const auto followed = std::ranges::find(assignments_, follower.followed, &Assignment::name);
+            if (document_.find(follower.name) == nullptr && followed != assignments_.end()) {
+                assignments_.push_back({std::string{follower.name}, followed->value});
             }
         }
         Parameters with_list;
@@ -226,7 +233,6 @@ class ExperimentReader {
     }
 
     void read_parameter(const JsonMember& member) {
-        names_reference_ |= member.name == "reference_population";
         if (member.name == "free_genes" && member.value.is_array()) {
             listed_genes_ = read_gene_list(member.value, "free_genes", violations_);
             assignments_.push_back({"free_genes", ParameterValue{listed_genes_.gene_count()}});
@@ -244,15 +250,19 @@ class ExperimentReader {
         }
     }
 
-    /// Adds the violations of `refused`. If the file does not set reference_population, that parameter equals
-    /// population_size; a fault of both is then reported only for population_size.
+    /// Adds the violations of `refused`. A value that the file gives to a parameter and its follower is wrong once.
     void add_violations(const base::Refusal& refused) {
+        const auto is_refused = [&](std::string_view name) {
+            return std::ranges::find(refused.violations, name, &Violation::field) != refused.violations.end();
+        };
         for (const Violation& violation : refused.violations) {
-            if (violation.field != "reference_population" || names_reference_) {
-                const JsonMember* member = document_.find(violation.field);
-                violations_.push_back({with_line(violation.field, member == nullptr ? document_.line : member->line),
-                                       violation.allowed, violation.got});
+            const JsonMember* member = document_.find(violation.field);
+            const ParameterDescription* followed = followed_by(violation.field);
+            if (member == nullptr && followed != nullptr && is_refused(followed->name)) {
+                continue;
             }
+            violations_.push_back({with_line(violation.field, member == nullptr ? document_.line : member->line),
+                                   violation.allowed, violation.got});
         }
     }
 
@@ -262,7 +272,6 @@ class ExperimentReader {
     std::vector<Assignment> assignments_;
     evolution::FreeGenes listed_genes_;
     std::vector<Violation> violations_;
-    bool names_reference_ = false;
 };
 
 /// Returns the scheduled values, for example {"1": 0.2, "30": 0.05}; empty if the parameter is not scheduled.
@@ -361,11 +370,9 @@ std::string to_experiment_text(const Parameters& parameters, Written written, co
     for (const ParameterDescription& description : parameter_registry()) {
         const ParameterValue value = description.get(parameters);
         const std::string scheduled = values_text(schedule, description.name);
-        // A file that does not name reference_population sets it to population_size.
-        const bool follows = description.name == "reference_population";
+        const ParameterDescription* followed = followed_by(description.name);
         if (written == Written::Differences && scheduled.empty() &&
-            (follows ? parameters.reference_population == parameters.population_size
-                     : value == description.default_value())) {
+            value == (followed == nullptr ? description.default_value() : followed->get(parameters))) {
             continue;
         }
         text += text.size() > 1 ? ",\n  " : "\n  ";

@@ -27,7 +27,7 @@ struct Experiment {
 };
 
 /// Reads the text of an experiment file. A parameter that the text does not name has its default value, except
-/// reference_population, which then equals population_size of generation 1. Violations name the field with its line:
+/// followers(), which then equal what they follow in generation 1. Violations name the field with its line:
 /// "mutation_chance (line 4)", "mutation_chance at generation 30 (line 4)".
 base::Result<Experiment> parse_experiment(std::string_view text);
 /// Reads an experiment from a JSON value inside another file. Violations name the lines of that file.

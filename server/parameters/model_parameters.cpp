@@ -144,7 +144,8 @@ double covered_share(const Parameters& p, const IslandPlan& plan) {
     if (p.crate_count > 0) {
         share = std::max(share, share_of_room(p.crate_count * square(crate) + around_obstacles(crate / 2), crate / 2));
     }
-    return std::max(share, share_of_room(p.population_size * base::pi * square(radius) +
+    const double organisms = static_cast<double>(p.population_size) + p.predator_count;
+    return std::max(share, share_of_room(organisms * base::pi * square(radius) +
                                              p.crate_count * square(crate + 2 * radius) + around_obstacles(radius),
                                          radius));
 }
@@ -331,6 +332,40 @@ bool has_bodies(const Parameters& parameters) {
            (parameters.fitness == FitnessFunction::External && parameters.external_bodies);
 }
 
+std::span<const std::string_view> kept_with_births() {
+    static constexpr std::string_view names[] = {"island_width_px",      "island_height_px", "scale_with_population",
+                                                 "reference_population", "obstacle_count",   "obstacle_size_px",
+                                                 "crate_count",          "crate_size_px",    "crate_mass_kg",
+                                                 "radius_per_unit_px",   "mass_per_unit_kg", "population_size"};
+    return names;
+}
+
+base::Effect effect_in(const Parameters& active, const ParameterDescription& description) {
+    const auto kept = kept_with_births();
+    return has_births(active) && std::ranges::find(kept, description.name) != kept.end() ? Effect::Reset
+                                                                                         : description.effect;
+}
+
+std::span<const Follower> followers() {
+    static constexpr Follower all[] = {{"reference_population", "population_size"},
+                                       {"predator_health_loss_per_s", "health_loss_per_s"},
+                                       {"predator_initial_gene_min", "initial_gene_min"},
+                                       {"predator_initial_gene_max", "initial_gene_max"},
+                                       {"predator_selection", "selection"},
+                                       {"predator_survivors", "survivors"},
+                                       {"predator_elite_count", "elite_count"},
+                                       {"predator_crossover", "crossover"},
+                                       {"predator_mutation_chance", "mutation_chance"},
+                                       {"predator_mutation_step", "mutation_step"},
+                                       {"predator_births", "births"},
+                                       {"predator_birth_health", "birth_health"},
+                                       {"predator_birth_cost", "birth_cost"},
+                                       {"predator_mate_px", "mate_px"},
+                                       {"predator_lifespan_s", "lifespan_s"},
+                                       {"predator_population_max", "population_max"}};
+    return all;
+}
+
 Parameters of_predators(Parameters p) {
     p.population_size = p.predator_count;
     p.health_loss_per_s = p.predator_health_loss_per_s;
@@ -392,8 +427,20 @@ class Faults {
     std::vector<base::Violation> found_;
 };
 
+/// The greatest number of living organisms on an island, of both species.
+double organisms_max(const Parameters& p) {
+    const double predators = p.predator_count;
+    if (!has_births(p)) {
+        return p.population_size + predators;
+    }
+    return std::max(p.population_size, p.population_max) +
+           (predators > 0 ? std::max(p.predator_count, p.predator_population_max) : 0.0);
+}
+
 void check_orders(const Parameters& p, Faults& faults) {
     faults.require_order("initial_gene_max", p.initial_gene_max, "initial_gene_min", p.initial_gene_min);
+    faults.require_order("predator_initial_gene_max", p.predator_initial_gene_max, "predator_initial_gene_min",
+                         p.predator_initial_gene_min);
     faults.require_order("normal_speed_max", p.normal_speed_max, "normal_speed_min", p.normal_speed_min);
     faults.require_order("impulse_max", p.impulse_max, "impulse_min", p.impulse_min);
     faults.require_order("body_size_max", p.body_size_max, "body_size_min", p.body_size_min);
@@ -405,16 +452,53 @@ void check_orders(const Parameters& p, Faults& faults) {
     if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement) {
         faults.require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
     }
+    if (p.predator_count > 0 && p.predator_selection == evolution::SelectionMethod::Tournament &&
+        !p.tournament_replacement) {
+        faults.require_order("predator_count", p.predator_count, "tournament_size", p.tournament_size);
+    }
+}
+
+/// Births leave nothing to the genetic algorithm but mutation and crossover.
+void check_births(const Parameters& p, Faults& faults) {
+    static constexpr std::string_view without_effect[] = {
+        "fitness_per_second",     "fitness_per_health", "fitness_per_food",   "fitness_per_poison",
+        "population_model",       "survivors",          "replaced_count",     "elite_count",
+        "mutate_survivors",       "shuffle_fitness",    "fitness_scaling",    "ranking_pressure",
+        "ranking_decay",          "selection",          "tournament_size",    "tournament_winners",
+        "tournament_replacement", "predator_selection", "predator_survivors", "predator_elite_count"};
+    if (!has_births(p)) {
+        return;
+    }
+    if (p.fitness != FitnessFunction::Life) {
+        faults.refuse("fitness", "life if reproduction is births: fitness is then the number of children",
+                      to_text(find_parameter("fitness")->get(p)));
+    }
+    for (const std::string_view name : without_effect) {
+        const ParameterDescription& description = *find_parameter(name);
+        if (const ParameterValue value = description.get(p); value != description.default_value()) {
+            faults.refuse(name,
+                          to_text(description.default_value()) +
+                              " if reproduction is births: life and death then select, not this parameter",
+                          to_text(value));
+        }
+    }
+    if (p.birth_every_s > p.generation_s) {
+        faults.refuse("birth_every_s", "at most generation_s (" + number_text(p.generation_s) + ")",
+                      number_text(p.birth_every_s));
+    }
 }
 
 void check_totals(const Parameters& p, Faults& faults) {
     // Limits for a server with a few gigabytes of memory. The ranges of single parameters do not limit the totals over
     // all islands.
-    const double organisms = static_cast<double>(p.island_count) * p.population_size;
-    if (organisms > 4e6) {
-        faults.refuse("island_count", "at most 4000000 organisms on all islands together",
-                      std::to_string(p.island_count) + " islands with a total of " + number_text(organisms));
+    const double living = p.island_count * organisms_max(p);
+    if (living > 4e6) {
+        faults.refuse(has_births(p) ? "population_max" : "island_count",
+                      "at most 4000000 organisms on all islands together",
+                      std::to_string(p.island_count) + " islands with a total of " + number_text(living));
     }
+    // With births, the chromosomes of the dead are kept until the interval ends.
+    const double organisms = has_births(p) ? 4 * living : living;
     faults.require_order("brain_weight_limit", p.brain_weight_limit, "brain_weight_initial", p.brain_weight_initial);
     if (p.controller == evolution::Controller::Network && evolution::has_body_genes(p)) {
         if (evolution::brain_layout(p).inputs.empty()) {
@@ -498,8 +582,11 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     Faults faults{field_prefix};
     check_orders(p, faults);
     check_totals(p, faults);
+    check_births(p, faults);
     if (has_bodies(p)) {
         check_bodies(p, faults);
+    } else if (p.predator_count > 0) {
+        faults.refuse("predator_count", "0 if organisms have no bodies (fitness)", std::to_string(p.predator_count));
     }
     return faults.take();
 }
@@ -507,7 +594,7 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
 Parameters taking_effect(const Parameters& active, const RequestedParameters& requested, base::Effect reached) {
     Parameters result = active;
     for (const ParameterDescription& description : parameter_registry()) {
-        if (description.effect <= reached) {
+        if (effect_in(active, description) <= reached) {
             description.copy(requested.values, result);
         }
     }

@@ -95,7 +95,7 @@ EVOD_CHOICE_NAMES(evod::parameters::Births, "sexual", "asexual")
     REAL(birth_every_s, 0.25, 0.001, 60, "s", NextGeneration, "Time from one search for parents to the next.")         \
     REAL(lifespan_s, 0, 0, 86'400, "s", NextGeneration, "Age at which an organism dies, with births; 0 means that no age is lethal.") \
     COUNT(population_max, 10'000, 1, 4'000'000, "organisms", NextGeneration, "Living organisms of a species on an island from which there are no further births.") \
-    FLAG(shuffle_births, false, NextTick, "Whether the genes of children come from parents that are drawn among the latest births, dead or alive: a control for experiments, in which births are as frequent as before but favour no gene.") \
+    FLAG(shuffle_births, false, Reset, "Whether the genes of children come from parents that are drawn among the latest births, dead or alive: a control for experiments, in which births are as frequent as before but favour no gene.") \
     TOPIC("Predators")                                                                                                 \
     COUNT(predator_count, 0, 0, 4'000'000, "organisms", Reset, "Predators on each island: in every generation, or with births at their arrival. They eat the other organisms, the prey, and no food or poison. 0 means that there is no second species.") \
     COUNT(predator_from, 1, 1, 1'000'000, "generation", Reset, "Generation or interval at whose beginning predators arrive.") \
@@ -177,6 +177,19 @@ struct ParameterDescription {
     std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
 };
 
+/// Parameters that take effect at a reset in worlds with births, whatever their description says: the living keep their
+/// places and bodies.
+std::span<const std::string_view> kept_with_births();
+
+/// Returns when a change of a parameter takes effect in a world with the parameters `active`.
+base::Effect effect_in(const Parameters& active, const ParameterDescription& description);
+
+/// A parameter whose default in an experiment file is the file's value of another one, in generation 1.
+struct Follower {
+    std::string_view name, followed; // predator_mutation_chance, mutation_chance
+};
+std::span<const Follower> followers();
+
 /// Returns all parameters in the order of their lists: the fitness function, the model, the genetic algorithm.
 std::span<const ParameterDescription> parameter_registry();
 
@@ -250,7 +263,7 @@ base::Result<RequestedParameters> assign(const RequestedParameters& requested, s
 /// requested.
 ParameterSet after_request(const ParameterSet& set, const RequestedParameters& requested);
 
-/// Returns `active` with the requested values of the parameters that take effect at `reached` or earlier.
+/// Returns `active` with the requested values of the parameters that take effect at `reached` or earlier (effect_in()).
 Parameters taking_effect(const Parameters& active, const RequestedParameters& requested, base::Effect reached);
 
 } // namespace evod::parameters

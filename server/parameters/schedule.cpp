@@ -62,7 +62,7 @@ void Schedule::begin_with(const Parameters& parameters) {
 Parameters breeding_with(const Parameters& active, const RequestedParameters& requested) {
     Parameters result = active;
     for (const ParameterDescription& description : parameter_registry()) {
-        if (description.effect == base::Effect::NextGeneration) {
+        if (effect_in(active, description) == base::Effect::NextGeneration) {
             description.copy(requested.values, result);
         }
     }
@@ -125,6 +125,16 @@ std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters&
     auto set = ParameterSet::all_in_effect(parameters);
     std::vector<ScheduleFault> faults;
     for (const auto& [generation, assignments] : schedule.changes()) {
+        for (const Assignment& assignment : assignments) {
+            if (generation > 1 && effect_in(parameters, *find_parameter(assignment.name)) == base::Effect::Reset) {
+                faults.push_back({generation,
+                                  {assignment.name, "one value: with births, it can change only at a reset",
+                                   to_text(assignment.value)}});
+            }
+        }
+        if (!faults.empty()) {
+            return faults;
+        }
         const auto requested = request_at_generation(set, assignments);
         if (!requested) {
             for (const base::Violation& violation : requested.error().violations) {

@@ -103,6 +103,9 @@ v1::ParameterState state_of(const parameters::ParameterDescription& description,
     if (requested != active) {
         *to.mutable_pending() = to_proto(requested);
     }
+    if (const base::Effect effect = effect_in(set.active, description); effect != description.effect) {
+        to.set_effect(to_proto(effect));
+    }
     if (const auto* range = class_rules != nullptr ? class_rules->range_of(description.name) : nullptr) {
         to.set_min(range->min);
         to.set_max(range->max);

@@ -109,12 +109,8 @@ World World::restarted(base::Seed seed, const std::optional<evolution::FreeGenes
 }
 
 evolution::Outcome World::outcome() const {
-    if (!generation_over_) {
-        return evolution::Outcome::Running;
-    }
-    // Without prey, a world with births has nothing to continue with.
-    const bool has_ended = parameters::has_births(parameters_.active()) && progress_.last_died_out;
-    return has_ended ? evolution::Outcome::Extinction : evolution::outcome(progress_, parameters_.active());
+    const parameters::Parameters& p = parameters_.active();
+    return generation_over_ ? evolution::outcome(progress_, p, parameters::has_births(p)) : evolution::Outcome::Running;
 }
 
 std::vector<IslandOutcome> World::outcomes() const {
@@ -215,14 +211,13 @@ bool World::has_died_out() const {
     if (!has_bodies() || !parameters::has_births(p)) {
         return has_bodies() && alive_count() == 0;
     }
-    std::array<std::uint64_t, 2> living{};
+    evolution::LivingSpecies living{
+        .predators_have_come = p.predator_count > 0 && moment_.generation >= p.predator_from};
     for (const IslandSummary& island : islands_->summaries()) {
-        for (std::size_t species = 0; species < living.size(); ++species) {
-            living[species] += island.breeder_counts[species];
-        }
+        living.prey += island.breeder_counts[0];
+        living.predators += island.breeder_counts[1];
     }
-    const bool predators_were_there = p.predator_count > 0 && moment_.generation >= p.predator_from;
-    return living[0] == 0 || (p.stop_at_extinction && predators_were_there && living[1] == 0);
+    return evolution::has_died_out(living, p);
 }
 
 void World::advance(std::uint64_t tick, base::Executor& executor) {

@@ -23,9 +23,18 @@ struct CountLimit {
     std::uint32_t max;
 };
 /// The counts on which the duration of a tick or of breeding depends.
-constexpr CountLimit limits[] = {{"population_size", 40}, {"island_count", 3},     {"food_count", 300},
-                                 {"poison_count", 300},   {"obstacle_count", 40},  {"crate_count", 20},
-                                 {"free_genes", 40},      {"tournament_size", 500}};
+constexpr CountLimit limits[] = {{"population_size", 40},
+                                 {"island_count", 3},
+                                 {"food_count", 300},
+                                 {"poison_count", 300},
+                                 {"obstacle_count", 40},
+                                 {"crate_count", 20},
+                                 {"free_genes", 40},
+                                 {"tournament_size", 500},
+                                 {"predator_count", 20},
+                                 {"population_max", 200},
+                                 {"predator_population_max", 200},
+                                 {"predator_from", 3}};
 
 std::uint32_t count_max_of(const ParameterDescription& description, std::uint32_t max) {
     const auto found = std::ranges::find(limits, description.name, &CountLimit::name);

@@ -44,6 +44,18 @@ constexpr Range narrow[] = {
     {"brain_hidden", 1, 8},
     {"migration_epoch", 1, 4},
     {"migrant_count", 1, 80},
+    {"birth_health", 5, 150},
+    {"birth_cost", 0, 30},
+    {"birth_every_s", 0.01, 0.5},
+    {"lifespan_s", 0, 4},
+    {"population_max", 1, 120},
+    {"predator_count", 0, 20},
+    {"predator_from", 1, 4},
+    {"predator_elite_count", 0, 20},
+    {"predator_birth_health", 5, 150},
+    {"predator_population_max", 1, 60},
+    {"predator_lifespan_s", 0, 4},
+    {"handling_s", 0, 1},
 };
 
 Range range_of(const ParameterDescription& description, double min, double max) {

@@ -37,9 +37,31 @@ class Assignments {
     v1::CreateWorld& create_;
 };
 
+/// Sets what colonies depend on: worlds with births, and worlds with predators.
+void add_colony(Assignments& assignments, Draws& draws) {
+    if (draws.chance(0.7)) {
+        assignments.set("reproduction", "births");
+        assignments.set("food_count", draws.count(20, 60));
+        assignments.set("generation_s", draws.number(0.5, 1.5));
+        for (const char* name : {"births", "birth_health", "birth_cost", "mate_px", "birth_every_s", "lifespan_s",
+                                 "population_max", "shuffle_births"}) {
+            assignments.draw(name, draws);
+        }
+    }
+    if (draws.chance(0.6)) {
+        assignments.set("predator_count", draws.count(1, 15));
+        for (const char* name : {"predator_from", "prey_health", "handling_s", "predator_births",
+                                 "predator_birth_health", "predator_lifespan_s", "predator_population_max"}) {
+            assignments.draw(name, draws);
+        }
+    }
+}
+
 void add_kind_of_world(Assignments& assignments, Draws& draws) {
-    const std::uint64_t kind = draws.below(10);
-    if (kind < 3) {
+    const std::uint64_t kind = draws.below(12);
+    if (kind >= 10) {
+        add_colony(assignments, draws);
+    } else if (kind < 3) {
         assignments.set("fitness", "external");
         assignments.set("external_bodies", draws.chance(0.6));
         assignments.set("objectives", draws.count(1, 3));

@@ -42,7 +42,7 @@ TEST(ComparisonReport, ShowsAsManyDecimalsAsTheFitnessNeeds) {
 TEST(ComparisonReport, ARowGivesTheRiseAndTheChanges) {
     auto plan = plan_of({"world", "other"});
     plan.arms[1].parameters.poison_harm = 0;
-    const std::string text = rises_text(plan, courses_of(2), 1);
+    const std::string text = outcomes_text(plan, courses_of(2), 1);
     EXPECT_THAT(text, HasSubstr("\nworld                100.0     100.0       0.0  -12.7 to +12.7             2\n"));
     EXPECT_THAT(text, HasSubstr("\nother                100.0     110.0     +10.0  -2.7 to +22.7              0  "
                                 "poison_harm=0\n"));
@@ -51,7 +51,7 @@ TEST(ComparisonReport, ARowGivesTheRiseAndTheChanges) {
 TEST(ComparisonReport, AControlThatWasNotRunHasAReason) {
     auto plan = plan_of({"world"});
     plan.controls.push_back({experiments::ControlKind::HarmlessPoison, "harmless_poison", {}, "there is no poison"});
-    EXPECT_THAT(rises_text(plan, courses_of(1), 1), HasSubstr("harmless_poison  is not run: there is no poison\n"));
+    EXPECT_THAT(outcomes_text(plan, courses_of(1), 1), HasSubstr("harmless_poison  is not run: there is no poison\n"));
 }
 
 TEST(ComparisonReport, ConcludesOnEachOtherWorld) {

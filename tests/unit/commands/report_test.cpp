@@ -14,6 +14,16 @@ TEST(Report, RowsAreAsWideAsTheHeading) {
     }
 }
 
+TEST(Report, ColoniesHaveColumnsOfBirthsAndPredators) {
+    simulation::GenerationStatistics statistics;
+    statistics.colony = simulation::ColonyStatistics{.born_count = 146, .eaten_count = 21, .old_count = 3};
+    statistics.predators.resize(1);
+    statistics.predators.front().alive_count = 53;
+    const std::string row = table_row(statistics, false, true);
+    EXPECT_EQ(row.size(), table_heading(false, true).size());
+    EXPECT_TRUE(row.ends_with("    146     21      3        53")) << row;
+}
+
 TEST(Report, TheIslandHasAColumnOnlyIfThereAreSeveral) {
     EXPECT_EQ(table_heading(false).find("island"), std::string::npos);
     EXPECT_NE(table_heading(true).find("island"), std::string::npos);

@@ -65,6 +65,23 @@ TEST(Termination, Extinction) {
     EXPECT_FALSE(advance(died, {.best_fitness = 1, .died_out = false}).last_died_out);
 }
 
+TEST(Termination, ExtinctionOfASpecies) {
+    const LivingSpecies none{0, 0, true}, prey{3, 0, true}, predators{0, 3, true}, before_predators{3, 0, false};
+    Parameters parameters;
+    for (const bool stops : {false, true}) {
+        parameters.stop_at_extinction = stops;
+        EXPECT_TRUE(has_died_out(none, parameters));
+        EXPECT_TRUE(has_died_out(predators, parameters));
+        EXPECT_EQ(has_died_out(prey, parameters), stops);
+        EXPECT_FALSE(has_died_out(before_predators, parameters));
+    }
+}
+
+TEST(Termination, AColonyEndsWithItsExtinction) {
+    EXPECT_EQ(outcome(after({5}, true), {}, true), Outcome::Extinction);
+    EXPECT_EQ(outcome(after({5}, false), {}, true), Outcome::Running);
+}
+
 TEST(Termination, TheFirstOutcomeThatHoldsIsReturned) {
     Parameters parameters;
     parameters.stop_at_target_fitness = parameters.stop_at_extinction = true;

@@ -44,6 +44,16 @@ TEST_F(ComparisonPlanTest, HasAnArmPerControlThatCanDiffer) {
     EXPECT_EQ(plan->arms[3].parameters.generation_limit, default_generations);
 }
 
+TEST_F(ComparisonPlanTest, WorldsWithBirthsHaveTheirOwnControls) {
+    const auto plan = plan_comparison({.controls = true, .changes = {"reproduction=births"}});
+    ASSERT_TRUE(plan) << to_text(plan.error());
+    EXPECT_THAT(names_of(*plan), ElementsAre("default", "mutation_off", "unselected_parents"));
+    EXPECT_TRUE(plan->arms[2].parameters.shuffle_births);
+    const std::string births = file("births.json", R"({"reproduction": "births"})"), bred = file("bred.json", "{}");
+    EXPECT_THAT(to_text(plan_comparison({.experiments = {births, bred}}).error()),
+                HasSubstr("bred: reproduction differs from that of births"));
+}
+
 TEST_F(ComparisonPlanTest, NumbersFilesOfTheSameName) {
     const std::string path = file("a.json", R"({"generation_limit": 7, "seed": 3})");
     const auto plan = plan_comparison({.experiments = {path, path}});

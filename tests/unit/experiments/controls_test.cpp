@@ -42,6 +42,26 @@ TEST(Controls, RandomSelectionIgnoresFitness) {
     EXPECT_EQ(changes(world, ControlKind::RandomSelection), "population_model=generational selection=random");
 }
 
+TEST(Controls, IncludePredators) {
+    Parameters world;
+    world.predator_count = 5;
+    world.predator_elite_count = 2;
+    EXPECT_EQ(changes(world, ControlKind::RandomSelection),
+              "predator_selection=random predator_elite_count=0 selection=random");
+    EXPECT_EQ(changes(world, ControlKind::MutationOff), "predator_mutation_chance=0 mutation_chance=0");
+    world.mutation_chance = 0;
+    EXPECT_EQ(changes(world, ControlKind::MutationOff), "predator_mutation_chance=0");
+}
+
+TEST(Controls, OfBirthsDrawParentsAmongTheLatestBirths) {
+    Parameters world;
+    world.reproduction = parameters::Reproduction::Births;
+    EXPECT_EQ(changes(world, ControlKind::UnselectedParents), "shuffle_births=true");
+    EXPECT_EQ(changes(world, ControlKind::MutationOff), "mutation_chance=0");
+    world.shuffle_births = true;
+    EXPECT_EQ(control_of(world, ControlKind::UnselectedParents).cannot_differ, "shuffle_births is already true");
+}
+
 TEST(Controls, HarmlessPoisonDoesNotAffectFitness) {
     Parameters world;
     world.fitness_per_poison = -10;

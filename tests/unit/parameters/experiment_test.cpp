@@ -56,6 +56,30 @@ TEST(Experiment, ReferencePopulationDefaultsToThePopulation) {
     EXPECT_EQ(refused.error().violations.size(), 1u);
 }
 
+TEST(Experiment, PredatorsHaveTheValuesOfThePrey) {
+    const auto read = [](const char* text) { return parse_experiment(text)->parameters; };
+    EXPECT_EQ(read(R"({"mutation_chance": 0.3})").predator_mutation_chance, 0.3);
+    EXPECT_EQ(read(R"({"mutation_chance": 0.3, "predator_mutation_chance": 0.1})").predator_mutation_chance, 0.1);
+    EXPECT_EQ(read(R"({"predator_mutation_chance": 0.1})").mutation_chance, 0.15);
+    EXPECT_EQ(read(R"({"mutation_chance": {"1": 0.3, "9": 0.1}})").predator_mutation_chance, 0.3);
+    EXPECT_EQ(read(R"({"births": "asexual"})").predator_births, Births::Asexual);
+    // A wrong value is reported once; values of predators that do not fit together are reported, too.
+    EXPECT_EQ(parse_experiment(R"({"mutation_chance": 3})").error().violations.size(), 1u);
+    EXPECT_EQ(parse_experiment(R"({"initial_gene_min": 130})").error().violations.size(), 1u);
+    EXPECT_THAT(refusal_of(R"({"predator_initial_gene_min": 130})"), HasSubstr("predator_initial_gene_max (line 1)"));
+}
+
+TEST(Experiment, WritesPredatorsThatDifferFromThePrey) {
+    Parameters p;
+    p.mutation_chance = 0.3;
+    EXPECT_THAT(to_experiment_text(p), HasSubstr("\"predator_mutation_chance\": 0.15"));
+    p.predator_mutation_chance = 0.3;
+    EXPECT_THAT(to_experiment_text(p), testing::Not(HasSubstr("predator")));
+    for (const Written written : {Written::Differences, Written::Everything}) {
+        EXPECT_TRUE(parse_experiment(to_experiment_text(p, written))->parameters == p);
+    }
+}
+
 TEST(Experiment, ReportsTheLineOfBrokenJson) {
     EXPECT_THAT(refusal_of("{\n  \"food_count\": 3,\n  \"respawn\" true\n}"), HasSubstr("line 3"));
     EXPECT_THAT(refusal_of("{\n  \"food_count\": 3\n"), HasSubstr("not JSON"));

@@ -61,7 +61,7 @@ TEST(ParameterRegistry, HasEachTopicOnce) {
         last = parameter.topic;
         most_used_count += parameter.is_most_used ? 1 : 0;
     }
-    EXPECT_EQ(topics.size(), 16u);
+    EXPECT_EQ(topics.size(), 18u);
     EXPECT_EQ(most_used_count, 7u) << "a name in the list of most used parameters does not exist";
 }
 
@@ -385,6 +385,100 @@ TEST(CrossFieldRules, LeaveRoomInsideTheSpawnMargin) {
     EXPECT_THAT(set(360), ElementsAre("spawn_margin_px: got 360, allowed less than half of the island's shorter side "
                                       "(360)"));
     EXPECT_THAT(set(300), ElementsAre(HasSubstr("population_size: got 50 organisms, covered share")));
+}
+
+TEST(CrossFieldRules, BirthsLeaveNothingToSelect) {
+    const auto with_births = [](std::string_view name, const ParameterValue& value) {
+        return violations(
+            assign({}, std::vector<Assignment>{{"reproduction", std::string{"births"}}, {std::string{name}, value}}));
+    };
+    EXPECT_THAT(with_births("mutation_chance", 0.3), IsEmpty());
+    EXPECT_THAT(with_births("target_fitness", 7.0), IsEmpty());
+    EXPECT_THAT(with_births("fitness", std::string{"external"}), ElementsAre(HasSubstr("the number of children")));
+    EXPECT_THAT(with_births("elite_count", 1U),
+                ElementsAre("elite_count: got 1, allowed 0 if reproduction is births: life and death then select, not "
+                            "this parameter"));
+    for (const char* name : {"selection", "population_model", "fitness_scaling", "predator_selection"}) {
+        const auto value = other_values(*find_parameter(name)).front();
+        EXPECT_THAT(with_births(name, value), ElementsAre(HasSubstr("reproduction is births"))) << name;
+    }
+    EXPECT_THAT(with_births("shuffle_fitness", true), ElementsAre(HasSubstr("shuffle_fitness: got true")));
+    EXPECT_THAT(with_births("birth_every_s", 41.0), ElementsAre(HasSubstr("at most generation_s (40)")));
+    EXPECT_THAT(with_births("shuffle_births", true), IsEmpty());
+    EXPECT_TRUE(accepted("birth_every_s", 41.0));
+}
+
+TEST(CrossFieldRules, LimitTheOrganismsOfColonies) {
+    const auto set = [](std::vector<Assignment> assignments) { return assign({}, assignments).has_value(); };
+    const Assignment births{"reproduction", std::string{"births"}};
+    EXPECT_TRUE(set({births, {"population_max", std::uint32_t{4'000'000}}}));
+    EXPECT_FALSE(set({births, {"population_max", std::uint32_t{4'000'000}}, {"predator_count", std::uint32_t{1}}}));
+    EXPECT_FALSE(set({births, {"population_max", std::uint32_t{400'000}}, {"island_count", std::uint32_t{11}}}));
+    EXPECT_TRUE(set({births, {"free_genes", std::uint32_t{1000}}, {"population_max", std::uint32_t{30'000}}}));
+    EXPECT_FALSE(set({births, {"free_genes", std::uint32_t{1000}}, {"population_max", std::uint32_t{31'000}}}));
+}
+
+TEST(CrossFieldRules, PredatorsNeedBodiesAndRoom) {
+    const auto with_predators = [](std::uint32_t count, std::vector<Assignment> assignments) {
+        assignments.push_back({"predator_count", count});
+        return violations(assign({}, assignments));
+    };
+    EXPECT_THAT(with_predators(20, {}), IsEmpty());
+    EXPECT_THAT(with_predators(20, {{"fitness", std::string{"gene_sum"}}}), ElementsAre(HasSubstr("predator_count")));
+    EXPECT_THAT(with_predators(400, {}), ElementsAre(HasSubstr("0.4 of an island")));
+    EXPECT_THAT(with_predators(20, {{"predator_initial_gene_min", 130.0}}),
+                ElementsAre(HasSubstr("predator_initial_gene_max: got 120")));
+    const std::vector<Assignment> tournaments{{"predator_selection", std::string{"tournament"}},
+                                              {"tournament_replacement", false},
+                                              {"tournament_size", std::uint32_t{21}}};
+    EXPECT_THAT(with_predators(20, tournaments), ElementsAre(HasSubstr("predator_count: got 20")));
+    EXPECT_THAT(with_predators(21, tournaments), IsEmpty());
+}
+
+TEST(TakingEffect, BirthsKeepBodiesAndIslandsUntilAReset) {
+    Parameters active;
+    active.reproduction = Reproduction::Births;
+    RequestedParameters requested{active};
+    requested.values.island_width_px = 2000;
+    requested.values.population_size = 60;
+    requested.values.birth_every_s = 1;
+    const Parameters next = taking_effect(active, requested, base::Effect::NextGeneration);
+    EXPECT_EQ(next.island_width_px, 1280);
+    EXPECT_EQ(next.population_size, 50u);
+    EXPECT_EQ(next.birth_every_s, 1);
+    EXPECT_TRUE(taking_effect(active, requested, base::Effect::Reset) == requested.values);
+    active.reproduction = Reproduction::Generations;
+    EXPECT_EQ(taking_effect(active, requested, base::Effect::NextGeneration).island_width_px, 2000);
+    for (const std::string_view name : kept_with_births()) {
+        ASSERT_NE(find_parameter(name), nullptr) << name;
+        EXPECT_EQ(find_parameter(name)->effect, base::Effect::NextGeneration) << name;
+    }
+}
+
+TEST(Followers, HaveTheDefaultAndTheRangeOfWhatTheyFollow) {
+    for (const auto& [name, followed] : followers()) {
+        ASSERT_NE(find_parameter(name), nullptr) << name;
+        ASSERT_NE(find_parameter(followed), nullptr) << followed;
+        EXPECT_EQ(find_parameter(name)->default_value(), find_parameter(followed)->default_value()) << name;
+        EXPECT_TRUE(find_parameter(name)->allowed() == find_parameter(followed)->allowed()) << name;
+        EXPECT_THAT(std::string{find_parameter(name)->help},
+                    HasSubstr("in an experiment file, the default is the file's " + std::string{followed}));
+    }
+}
+
+TEST(OfPredators, TakesEveryValueOfThePredators) {
+    for (const auto& [name, followed] : followers()) {
+        if (!name.starts_with("predator_")) {
+            continue;
+        }
+        Parameters p;
+        const auto changed = assign(p, one(name, other_values(*find_parameter(name)).front()));
+        ASSERT_TRUE(changed.has_value()) << name;
+        EXPECT_EQ(find_parameter(followed)->get(of_predators(*changed)), find_parameter(name)->get(*changed)) << name;
+    }
+    Parameters p;
+    p.predator_count = 7;
+    EXPECT_EQ(of_predators(p).population_size, 7u);
 }
 
 TEST(IslandPlan, ScalesWithThePopulationIfRequested) {

@@ -136,5 +136,18 @@ TEST(ScheduleFaults, AreThoseOfTheFirstInvalidGeneration) {
     EXPECT_TRUE(faults_of(schedule, {}).empty());
 }
 
+TEST(Schedule, BirthsKeepTheIsland) {
+    Parameters p;
+    Schedule schedule;
+    schedule.add(5, {"island_width_px", 2000.0});
+    schedule.begin_with(p);
+    EXPECT_TRUE(faults_of(schedule, p).empty());
+    p.reproduction = Reproduction::Births;
+    const auto faults = faults_of(schedule, p);
+    ASSERT_EQ(faults.size(), 1u);
+    EXPECT_EQ(faults[0].generation, 5u);
+    EXPECT_EQ(faults[0].violation.field, "island_width_px");
+}
+
 } // namespace
 } // namespace evod::parameters

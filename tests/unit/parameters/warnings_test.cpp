@@ -76,5 +76,65 @@ TEST(Warnings, FoundersAtABoundAreEqual) {
     EXPECT_THAT(warnings_of(small), IsEmpty());
 }
 
+Parameters colony() {
+    Parameters p;
+    p.reproduction = Reproduction::Births;
+    p.food_count = 250;
+    p.respawn_s = 5;
+    return p;
+}
+
+TEST(Warnings, AColonyNeedsFoodForBirths) {
+    EXPECT_THAT(warnings_of(colony()), IsEmpty());
+    Parameters p = colony();
+    p.food_count = 25;
+    p.respawn_s = 0;
+    EXPECT_THAT(warnings_of(p), ElementsAre(AllOf(HasSubstr("food_count 25"), HasSubstr("population_size 50"))));
+    p = colony();
+    p.respawn_s = 60;
+    EXPECT_THAT(warnings_of(p), ElementsAre(HasSubstr("at most 17 organisms")));
+    p.respawn = false;
+    EXPECT_THAT(warnings_of(p), ElementsAre(HasSubstr("the colony starves")));
+}
+
+TEST(Warnings, AColonyNeedsBirths) {
+    Parameters p = colony();
+    p.health_cap_per_size = 0.5;
+    EXPECT_THAT(warnings_of(p), ElementsAre(HasSubstr("birth_health 120")));
+    p = colony();
+    p.population_max = 50;
+    EXPECT_THAT(warnings_of(p), ElementsAre(HasSubstr("population_max 50")));
+    p = colony();
+    p.births = Births::Asexual;
+    p.mutation_chance = 0;
+    EXPECT_THAT(warnings_of(p), ElementsAre(HasSubstr("no new chromosome")));
+    p = {};
+    p.shuffle_births = true;
+    EXPECT_THAT(warnings_of(p), ElementsAre(HasSubstr("shuffle_births has no effect")));
+}
+
+TEST(Warnings, PredatorsNeedPreyOfTheRightHealth) {
+    Parameters p = colony();
+    p.predator_count = 20;
+    EXPECT_THAT(warnings_of(p), IsEmpty());
+    p.handling_s = 2.5;
+    EXPECT_THAT(warnings_of(p), ElementsAre(AllOf(HasSubstr("eat up all prey"), HasSubstr(" is 4,"))));
+    p.handling_s = 0;
+    EXPECT_THAT(warnings_of(p), ElementsAre(HasSubstr("eat up all prey")));
+    p.handling_s = 10;
+    EXPECT_THAT(warnings_of(p), ElementsAre(AllOf(HasSubstr("starve"), HasSubstr(" is 1,"))));
+    p.reproduction = Reproduction::Generations;
+    EXPECT_THAT(warnings_of(p), IsEmpty());
+}
+
+TEST(Warnings, PredatorsHaveWarningsOfTheirOwn) {
+    Parameters p;
+    p.predator_count = 20;
+    p.predator_elite_count = 20;
+    EXPECT_THAT(warnings_of(p), ElementsAre(AllOf(HasSubstr("predators,"), HasSubstr("elite_count 20"))));
+    p.elite_count = 50;
+    EXPECT_EQ(warnings_of(p).size(), 2u);
+}
+
 } // namespace
 } // namespace evod::parameters

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -40,6 +41,19 @@ TEST(ParameterMessage, ASetHasCurrentAndPendingValues) {
     EXPECT_EQ(static_cast<std::size_t>(message.parameters_size()), parameters::parameter_registry().size());
     for (const auto& state : message.parameters()) {
         EXPECT_EQ(state.has_pending(), state.name() == "population_size") << state.name();
+    }
+}
+
+TEST(ParameterMessage, AStateHasAnEffectThatIsNotTheUsual) {
+    parameters::ParameterSet set;
+    for (const bool has_births : {false, true}) {
+        set.active.reproduction = has_births ? parameters::Reproduction::Births : parameters::Reproduction::Generations;
+        for (const auto& state : to_proto(set, nullptr).parameters()) {
+            const auto kept = parameters::kept_with_births();
+            const bool is_kept = std::ranges::find(kept, state.name()) != kept.end();
+            EXPECT_EQ(state.has_effect(), has_births && is_kept) << state.name();
+            EXPECT_TRUE(!state.has_effect() || state.effect() == v1::PARAMETER_EFFECT_RESET) << state.name();
+        }
     }
 }
 

@@ -149,6 +149,9 @@ export interface ParameterState {
   /** The range in this world, where the quota of its class is narrower than ParameterDescription's. */
   min?: number;
   max?: number;
+  /** When a change takes effect in this world, where that differs from ParameterDescription's: with births, the islands
+   *  and what is on them change at a reset. Otherwise absent. */
+  effect?: ParameterEffect;
 }
 
 /** The cause of a change. Clients with the role viewer receive only `kind` and `user`. */

@@ -3,8 +3,10 @@
 import annealing from "../../../../experiments/annealing.json";
 import brains from "../../../../experiments/brains.json";
 import classic from "../../../../experiments/classic.json";
+import colony from "../../../../experiments/colony.json";
 import standard from "../../../../experiments/default.json";
 import islands from "../../../../experiments/islands.json";
+import predators from "../../../../experiments/predators.json";
 import rooy from "../../../../experiments/rooy.json";
 import trade_offs from "../../../../experiments/trade_offs.json";
 import {first_population} from "../freezer/first_population";
@@ -23,8 +25,8 @@ import {gene_problem, name_characters_max, name_of_file, name_problem, unused_na
 import type {PanelContext} from "../world/panel_context";
 
 const presets: [string, {description: string}][] = [
-  ["default", standard], ["annealing", annealing], ["brains", brains], ["classic", classic], ["islands", islands],
-  ["rooy", rooy], ["trade_offs", trade_offs]
+  ["default", standard], ["annealing", annealing], ["brains", brains], ["classic", classic], ["colony", colony],
+  ["islands", islands], ["predators", predators], ["rooy", rooy], ["trade_offs", trade_offs]
 ];
 const seed_max = (1n << 64n) - 1n;
 

@@ -19,6 +19,7 @@ export class ParameterRow {
   readonly #toggle: HTMLButtonElement;
   readonly #remarks = h("span", {class: "parameter-remarks"});
   readonly #refused = h("p", {class: "error parameter-wide"});
+  readonly #effect = h("span", {});
   readonly #help = h("div", {class: "parameter-help parameter-wide", hidden: true});
   readonly #default_button: HTMLButtonElement;
   #described = ""; // what the help shows
@@ -53,14 +54,10 @@ export class ParameterRow {
         onclick: () => this.#control.set(about.default_value ?? {}),
       },
         texts.to_default);
-    const {effect = "PARAMETER_EFFECT_UNSPECIFIED"} = this.#about;
-    const {word, sentence} = effect_texts[effect] ?? {word: "", sentence: ""};
-    const is_now = effect === "PARAMETER_EFFECT_NEXT_TICK";
     this.element =
       h("div", {class: "parameter", "data-name": about.name}, h("div", {}, this.#toggle, this.#remarks),
         h("div", {class: "parameter-value"}, this.#control.main),
-        h("div", {class: "parameter-effect"},
-          h("span", {class: is_now ? "parameter-now" : null, title: sentence}, word), this.#default_button),
+        h("div", {class: "parameter-effect"}, this.#effect, this.#default_button),
         this.#control.slider, this.#refused, this.#help);
   }
 
@@ -76,6 +73,11 @@ export class ParameterRow {
     this.element.classList.toggle("parameter-edited", edit !== null);
     this.element.classList.toggle("parameter-refused", violation !== null || this.typing_problem !== "");
     set_text(this.#mark, is_default ? "" : " •");
+    const {effect = "PARAMETER_EFFECT_UNSPECIFIED"} = this.#state.about;
+    const {word, sentence} = effect_texts[effect] ?? {word: "", sentence: ""};
+    set_text(this.#effect, word);
+    this.#effect.title = sentence;
+    this.#effect.classList.toggle("parameter-now", effect === "PARAMETER_EFFECT_NEXT_TICK");
     this.#default_button.hidden = is_default || !may;
     set_text(this.#remarks, this.#remarks_text());
     set_text(

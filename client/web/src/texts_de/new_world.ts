@@ -16,9 +16,15 @@ export const new_world_texts: typeof english.new_world_texts = {
     classic:
       "Die ursprünglichen Regeln der Dissertation: Organismen umkreisen ihr Futter und fliehen immer. Die Population " +
       "ist klein, und Überlebende mutieren. Der Zufall überwiegt hier die Selektion.",
+    colony:
+      "Eine Kolonie ohne Generationen: Organismen mit genug Gesundheit bekommen Kinder neben sich und sterben an " +
+      "Hunger, Gift oder Alter. Die Gesundheit eines Kindes zahlen seine Eltern. Fitness ist die Zahl der Kinder.",
     islands:
       "Acht Inseln in einem Ring: Alle zehn Generationen schickt jede Insel eine Kopie ihres besten Organismus zur " +
       "nächsten.",
+    predators:
+      "Beute und Räuber ohne Generationen: Räuber kommen in Abschnitt 10, fressen Beute und streifen nach jeder " +
+      "Mahlzeit sechs Sekunden umher. Die Beute flieht vor ihnen. Kinder beider Arten haben einen Elternteil.",
     rooy:
       "Netze mit einem Eingang steuern auf Futter zu, wie in N. Rooys „Evolving Simple Organisms“ (2017), hier mit " +
       "Wänden fern vom Futter; der nächste Organismus erhält das Stück.",

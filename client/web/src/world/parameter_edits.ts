@@ -33,7 +33,7 @@ export class EditedParameter {
   client_of_last_change = ""; // empty: no other client has changed it since the value was received or set here
   violation: Violation|null = null; // why the server rejected the value that was sent last; null if it accepted it
 
-  /** about: of the registry; then with the range of the world, where that is narrower. */
+  /** about: of the registry; then with what differs in the world. */
   constructor(public about: ParameterDescription) {
     this.value = about.default_value ?? {};
   }
@@ -101,7 +101,7 @@ export class ParameterEdits {
     }
     for (const state of set.parameters ?? []) {
       this.#take(state);
-      this.#narrow(state);
+      this.#adapt(state);
     }
     this.planned = set.planned ?? [];
     this.schedule = set.schedule ?? [];
@@ -133,12 +133,13 @@ export class ParameterEdits {
     }
   }
 
-  /** Takes the range that the quota of a class allows. */
-  #narrow({name = "", min, max}: ParameterState): void {
+  /** Takes what differs in this world: the range, by the quota of a class, and when a change takes effect. */
+  #adapt({name = "", min, max, effect}: ParameterState): void {
     const i = this.#index.get(name) ?? -1, about = this.registry[i];
     if (about) {
+      const differs = min !== undefined || max !== undefined || effect !== undefined;
       this.parameters[i]!.about =
-        min === undefined && max === undefined ? about : {...about, min: min ?? about.min, max: max ?? about.max};
+        !differs ? about : {...about, min: min ?? about.min, max: max ?? about.max, effect: effect ?? about.effect};
     }
   }
 

@@ -16,12 +16,13 @@ export interface ParameterGroup {
 export function in_language(registry: readonly ParameterDescription[]): ParameterDescription[] {
   return registry.map((about) => {
     const {name = "", topic = "", help = "", unit = "", choices = [], choice_help = []} = about;
+    const choices_of = name.replace(/^predator_/, "");
     return {
       ...about,
       topic: topic_titles[topic.toLowerCase().replace(/ /g, "_")] ?? topic,
       help: parameter_helps[name] ?? help,
       unit: unit_words[unit] ?? unit,
-      choice_help: choice_help.map((text, n) => choice_helps[`${name} ${choices[n]}`] ?? text),
+      choice_help: choice_help.map((text, n) => choice_helps[`${choices_of} ${choices[n]}`] ?? text),
     };
   });
 }
