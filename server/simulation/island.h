@@ -240,8 +240,8 @@ class Island {
     void add_deaths(const Block& block);
     base::StateHash eat_prey(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
     base::StateHash hash_of_handling() const;
-    /// Returns the prey that a predator touches and may eat; BodyGrid::none if there is none.
-    std::uint32_t touched_prey(std::uint32_t predator, std::uint32_t tick) const;
+    /// Returns the prey that a predator reaches and may eat; BodyGrid::none if there is none.
+    std::uint32_t reached_prey(std::uint32_t predator, std::uint32_t tick) const;
     bool births_are_due(const parameters::Parameters& parameters, std::uint32_t tick) const;
     void give_birth(const parameters::Parameters& parameters, std::uint32_t tick);
     class Nursery;

@@ -99,8 +99,8 @@ const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, boo
         if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height) {
             return "position of an item";
         }
-        const bool reappears =
-            (rules_.respawn || item.due_tick == 1) && id < rules_.count && item.due_tick <= last_due && (item.due_tick > tick || resting);
+        const bool reappears = (rules_.respawn || item.due_tick == 1) && id < rules_.count &&
+                               item.due_tick <= last_due && (item.due_tick > tick || resting);
         if (item.due_tick != 0 && item.due_tick != none && !reappears) {
             return "due tick of an item";
         }

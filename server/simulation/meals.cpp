@@ -179,16 +179,17 @@ void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, 
     living_.health[body] = -std::numeric_limits<float>::infinity();
 }
 
-// Predation. A predator that handles no prey claims the nearest living prey that it touches; equal distances: the lowest
-// id. A prey that several predators claim goes to the nearest of them, the others get nothing. Prey that poison, hunger
+// Predation. A predator that handles no prey claims the nearest living prey that it reaches; equal distances: the lowest
+// id. It reaches a little beyond its body, because contacts push bodies apart until they just do not touch. A prey that several predators claim goes to the nearest of them, the others get nothing. Prey that poison, hunger
 // or age has killed in the same tick are dead already.
 
-std::uint32_t Island::touched_prey(std::uint32_t predator, std::uint32_t tick) const {
+std::uint32_t Island::reached_prey(std::uint32_t predator, std::uint32_t tick) const {
     if (bodies_.is_void(predator) || living_.hunts_from[predator] > tick) {
         return BodyGrid::none;
     }
     const physics::Coordinate x = bodies_.x[predator], y = bodies_.y[predator];
-    const float radius = bodies_.radius[predator];
+    constexpr float beyond_px = 1;
+    const float radius = bodies_.radius[predator] + beyond_px;
     return hunt_.prey().nearest(bodies_, x, y, radius + hunt_.widest_prey_px(), [&](std::uint32_t prey) {
         const float dx = physics::distance_px(x, bodies_.x[prey]), dy = physics::distance_px(y, bodies_.y[prey]);
         const float reach = radius + bodies_.radius[prey];
@@ -204,7 +205,7 @@ base::StateHash Island::eat_prey(const parameters::Parameters& parameters, std::
     constexpr std::size_t predators_per_piece = 256;
     executor.parallel_for(predators.size(), predators_per_piece, [&](base::Range range) {
         for (std::size_t k = range.begin; k < range.end; ++k) {
-            claimed[k] = touched_prey(predators[k], tick);
+            claimed[k] = reached_prey(predators[k], tick);
         }
     });
 

@@ -211,8 +211,8 @@ bool World::has_died_out() const {
     if (!has_bodies() || !parameters::has_births(p)) {
         return has_bodies() && alive_count() == 0;
     }
-    evolution::LivingSpecies living{
-        .predators_have_come = p.predator_count > 0 && moment_.generation >= p.predator_from};
+    evolution::LivingSpecies living{.predators_have_come =
+                                        p.predator_count > 0 && moment_.generation >= p.predator_from};
     for (const IslandSummary& island : islands_->summaries()) {
         living.prey += island.breeder_counts[0];
         living.predators += island.breeder_counts[1];

@@ -157,7 +157,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         starved += life_records.cause[id] == CauseOfDeath::Starved;
         poisoned += life_records.cause[id] == CauseOfDeath::Poisoned;
         const bool removed = life_records.cause[id] == CauseOfDeath::Removed;
-        if (!own.has_bodies || life_records.cause[id] > CauseOfDeath::Old ||
+        if (!own.has_bodies || life_records.cause[id] > (own.is_colony ? CauseOfDeath::Old : CauseOfDeath::Removed) ||
             (life_records.lived_ticks[id] == 0 && !removed) || life_records.lived_ticks[id] > tick ||
             state.organisms[id] != IslandState::Organism{} || (own.has_headings && state.headings[id] != 0)) {
             return which("death");

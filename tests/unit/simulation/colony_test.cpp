@@ -162,17 +162,15 @@ TEST_F(QuietIsland, APredatorEatsAndHandlesItsMeal) {
     parameters.handling_s = 2 * parameters.tick_s;
     parameters.birth_health = 10'000;
     begin({with_health(60), with_health(60), with_health(80)}, 1);
-    move({at(100, 100), at(104, 100), at(108, 100)});
+    move({at(119, 100), at(100, 114), at(100, 100)});
     tick();
     EXPECT_EQ(cause(1), CauseOfDeath::Eaten) << "the nearest";
     EXPECT_EQ(cause(0), CauseOfDeath::Alive) << "one at a time";
     EXPECT_FLOAT_EQ(health(2), 80 + 60);
     EXPECT_EQ(island.life_records().food_eaten[2], 1u);
-    move({at(100, 100), at(0, 0), at(104, 100)});
     tick();
     tick();
     EXPECT_EQ(cause(0), CauseOfDeath::Alive) << "it handles its meal for two ticks";
-    move({at(100, 100), at(0, 0), at(104, 100)});
     tick();
     EXPECT_EQ(cause(0), CauseOfDeath::Eaten);
 }
@@ -180,7 +178,7 @@ TEST_F(QuietIsland, APredatorEatsAndHandlesItsMeal) {
 TEST_F(QuietIsland, ThePreyGoesToTheNearestPredator) {
     parameters.birth_health = 10'000;
     begin({with_health(60), with_health(80), with_health(80)}, 2);
-    move({at(100, 100), at(110, 100), at(94, 100)});
+    move({at(100, 100), at(119, 100), at(100, 86)});
     tick();
     EXPECT_FLOAT_EQ(health(2), 140);
     EXPECT_FLOAT_EQ(health(1), 80);
