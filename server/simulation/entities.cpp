@@ -303,9 +303,13 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
     const parameters::Parameters of_predators = parameters::of_predators(parameters);
     std::vector<Arrival> arrivals;
     for (const NewOrganism& organism : organisms) {
-        const bool is_child = organism.parents.first != no_parents.first;
-        arrivals.push_back(
-            {organism.tick, organism.parents, is_child && species_of(organism.parents.first) == Species::Predator});
+        const std::uint32_t parent = organism.parents.first;
+        const bool is_new =
+            parent >= static_cast<std::uint32_t>(first); // restore() appends the children of children at once
+        const bool is_predator =
+            parent != no_parents.first && (is_new ? arrivals[parent - static_cast<std::uint32_t>(first)].is_predator
+                                                  : species_of(parent) == Species::Predator);
+        arrivals.push_back({organism.tick, organism.parents, is_predator});
     }
     born_.genes.conservativeResize(Eigen::NoChange, first + std::ssize(organisms));
     arrivals_.insert(arrivals_.end(), arrivals.begin(), arrivals.end());
