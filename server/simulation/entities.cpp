@@ -304,9 +304,11 @@ void Island::append(std::span<const NewOrganism> organisms, const parameters::Pa
     std::vector<Arrival> arrivals;
     for (const NewOrganism& organism : organisms) {
         const std::uint32_t parent = organism.parents.first;
-        const bool is_predator = parent == no_parents.first ? false
-                                 : parent < first           ? species_of(parent) == Species::Predator
-                                                            : arrivals[parent - first].is_predator;
+        const bool is_new =
+            parent >= static_cast<std::uint32_t>(first); // restore() appends the children of children at once
+        const bool is_predator =
+            parent != no_parents.first && (is_new ? arrivals[parent - static_cast<std::uint32_t>(first)].is_predator
+                                                  : species_of(parent) == Species::Predator);
         arrivals.push_back({organism.tick, organism.parents, is_predator});
     }
     born_.genes.conservativeResize(Eigen::NoChange, first + std::ssize(organisms));

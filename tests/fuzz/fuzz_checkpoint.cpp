@@ -1,7 +1,7 @@
 // Fuzz checkpoint: any bytes as the state in a checkpoint are refused, or give a world that continues.
 //
-// The first byte determines whether the rest is compressed, the tick of the state, and whether the world is a colony. If
-// its lower seven bits are 124 or more, the rest is the opening of an interval.
+// The first byte determines whether the rest is compressed, the tick of the state, and whether the world is a colony.
+// If its lower seven bits are 124 or more, the rest is the opening of an interval.
 #include "server/base/inline_executor.h"
 #include "server/run_file/checkpoint.h"
 #include "server/simulation/opening_check.h"

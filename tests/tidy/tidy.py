@@ -334,6 +334,8 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/recording", "disk_state log_jobs record_queue run_log storage_worker"):
         "unit/recording/storage_thread_test and recorder_test",
     ("server/replay", "table"): "unit/replay/run_tables_test",
+    ("server/replay", "birth_table origins"): "unit/replay/colony_test",
+    ("server/run_file", "more_genes"): "unit/replay/wide_run_test",
     ("server/run_file", "backup"): "system/backup_test: it needs a running server",
     ("server/run_file", "build checkpoints generations identity journal parameter_sets records row run_contents "
                         "run_database "

@@ -70,7 +70,15 @@ template <>
 struct Fields<simulation::GenerationStatistics> {
     static void visit(auto& statistics, auto&& each) {
         for_each_number(statistics, [&](const char*, auto& number) { each(number); });
-        each(statistics.genes, statistics.account, statistics.colony, statistics.predators);
+        bool has_colony = statistics.colony.has_value();
+        each(statistics.genes, statistics.account, has_colony);
+        if constexpr (!std::is_const_v<std::remove_reference_t<decltype(statistics)>>) {
+            statistics.colony = has_colony ? std::optional{simulation::ColonyStatistics{}} : std::nullopt;
+        }
+        if (has_colony) { // number by number: equal statistics have equal bytes
+            for_each_colony_number(*statistics.colony, [&](const char*, auto& number) { each(number); });
+        }
+        each(statistics.predators);
     }
 };
 template <>

@@ -1,4 +1,5 @@
 // Runs of colonies: recovery, verification, forks and tables.
+#include "server/replay/breeding.h"
 #include "server/replay/lineage.h"
 #include "server/replay/mismatch.h"
 #include "server/replay/recovery.h"
@@ -202,6 +203,40 @@ TEST_P(StoredColonyTest, LineageFindsTheParents) {
     EXPECT_GE(lines.size(), 5u);
     EXPECT_THAT(lines.front(), HasSubstr(",species"));
     EXPECT_GT(lines_of(*file, {.table = RunTable::Organisms}).size(), 24u);
+}
+
+TEST_P(StoredColonyTest, GenerationsThatAreNotRetainedAreSimulated) {
+    thread = std::make_unique<StorageThread>(RunFile::Options{.keep_every = 3});
+    {
+        const auto run = begin();
+        run->advance(700);
+        run->recorder().close_all(run->laboratory());
+    }
+    const auto file = file_left();
+    expect_agrees(*file);
+    ASSERT_TRUE(file->pin_snapshot());
+    EXPECT_EQ(file->database().number("SELECT count(*) FROM interval WHERE generation = 3"), 0);
+    const auto lines = lines_of(*file, {.table = has_births() ? RunTable::Births : RunTable::Lineage});
+    EXPECT_GT(lines.size(), 24u);
+}
+
+TEST_P(StoredColonyTest, BreedingIsThatOfThePrey) {
+    {
+        const auto run = begin();
+        run->advance(700);
+        run->recorder().close_all(run->laboratory());
+    }
+    const auto file = file_left();
+    ASSERT_TRUE(file->pin_snapshot());
+    for (const std::uint64_t generation : {1u, 2u, 4u}) {
+        const auto bred = breeding_of(*file, {.generation = generation, .island = 1, .rows = {}}, executor, {});
+        ASSERT_EQ(bred.has_value(), !has_births()) << (bred ? "" : to_text(bred.error()));
+        if (bred) {
+            EXPECT_EQ(bred->record.contender_count, 12u);
+        } else {
+            EXPECT_THAT(to_text(bred.error()), HasSubstr("a world with births breeds no generations"));
+        }
+    }
 }
 
 TEST_P(StoredColonyTest, ImpossibleOpeningsAreRefused) {
