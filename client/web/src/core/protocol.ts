@@ -514,7 +514,8 @@ export interface OrganismInfo {
   /** Position of the food or poison that the organism seeks or flees; its own position otherwise. */
   target_x_px?: number;
   target_y_px?: number;
-  /** The organism was placed after this tick, counted from the start of its generation. Absent: it was bred. */
+  /** The organism was placed, or with births was born, after this tick, counted from the start of its generation.
+   *  Absent: it was bred. */
   placed_tick?: number;
   /** Radians from +x toward +y, -pi to pi. Absent if the organism is dead or has no heading. */
   heading?: number;
