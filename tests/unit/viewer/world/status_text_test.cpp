@@ -122,7 +122,8 @@ TEST(StatusText, ListsTheStatisticsOfBothGenerations) {
     EXPECT_THAT(statistics_texts(snapshot, &last),
                 ElementsAre("alive 43 of 50", "predators 9, prey eaten 31", "born 1,200", "mean health 78.2",
                             "food eaten 1,312", "poison eaten 45", "tick 36,034 (10:01 min)",
-                            "fitness of generation 15: best 251.3, mean 160.2", "of its predators: best 12, mean 3.5"));
+                            "fitness of generation 15: best 251.3, mean 160.2",
+                            "of its predators: best 12.0, mean 3.5"));
 }
 
 TEST(StatusText, LabelsReplaysOfLiveWorldsAndOfRunFiles) {
