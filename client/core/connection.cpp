@@ -203,6 +203,7 @@ SubscriptionHandle Connection::subscribe(evod::v1::SubscribeSnapshots subscripti
         subscription.set_compression(evod::v1::COMPRESSION_ZSTD);
         subscription.set_unacknowledged_max(unacknowledged_snapshots_max);
         subscription.set_headings(true);
+        subscription.set_species(true);
     }
     *request.mutable_subscribe_snapshots() = std::move(subscription);
     return io_->subscribe(std::move(request));

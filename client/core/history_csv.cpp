@@ -39,6 +39,26 @@ void for_each_number(const evod::v1::GenerationStatistics& s, Visit visit) {
     visit("best_organism", s.best_organism());
 }
 
+/// Calls visit(name, number) for every column that only colonies have.
+template <class Visit>
+void for_each_colony_number(const evod::v1::ColonyStatistics& s, Visit visit) {
+    visit("first_count", s.first_count());
+    visit("lowest_count", s.lowest_count());
+    visit("count_mean", s.count_mean());
+    visit("born_count", s.born_count());
+    visit("refused_count", s.refused_count());
+    visit("without_room_count", s.without_room_count());
+    visit("eaten_count", s.eaten_count());
+    visit("old_count", s.old_count());
+    visit("died_count", s.died_count());
+    visit("children_mean", s.children_mean());
+    visit("children_variance", s.children_variance());
+    visit("age_mean_s", s.age_mean_s());
+}
+
+constexpr std::size_t moment_columns =
+    4; // the columns that both species share: generation, island, end_tick, simulated_s
+
 constexpr std::string_view gene_parts[] = {"_mean", "_deviation", "_min", "_max"};
 constexpr std::string_view account_parts[] = {"_selection", "_transmission", "_migration", "_change"};
 
@@ -50,7 +70,12 @@ Error misread(std::string what) {
 
 } // namespace
 
-std::vector<std::string> history_columns(std::span<const std::string> gene_names) {
+ColonyColumns colony_columns_of(const google::protobuf::RepeatedPtrField<evod::v1::GenerationStatistics>& generations) {
+    return {.colony = std::ranges::any_of(generations, &evod::v1::GenerationStatistics::has_colony),
+            .predators = std::ranges::any_of(generations, &evod::v1::GenerationStatistics::has_predators)};
+}
+
+std::vector<std::string> history_columns(std::span<const std::string> gene_names, ColonyColumns with) {
     std::vector<std::string> columns;
     for_each_number({}, [&](const char* name, auto) { columns.emplace_back(name); });
     for (const std::string& gene : gene_names) {
@@ -63,10 +88,19 @@ std::vector<std::string> history_columns(std::span<const std::string> gene_names
             columns.push_back(gene + std::string{part});
         }
     }
+    if (with.colony) {
+        for_each_colony_number({}, [&](const char* name, auto) { columns.emplace_back(name); });
+    }
+    if (with.predators) {
+        const std::vector<std::string> prey{columns.begin() + moment_columns, columns.end()};
+        for (const std::string& column : prey) {
+            columns.push_back("predators_" + column);
+        }
+    }
     return columns;
 }
 
-std::vector<double> history_numbers(const evod::v1::GenerationStatistics& statistics) {
+std::vector<double> history_numbers(const evod::v1::GenerationStatistics& statistics, ColonyColumns with) {
     std::vector<double> numbers;
     for_each_number(statistics, [&](const char*, auto number) { numbers.push_back(static_cast<double>(number)); });
     for (const evod::v1::GeneStatistics& gene : statistics.genes()) {
@@ -81,12 +115,26 @@ std::vector<double> history_numbers(const evod::v1::GenerationStatistics& statis
         numbers.insert(numbers.end(),
                        {account.selection(), account.transmission(), account.migration(), account.change()});
     }
+    if (with.colony) {
+        for_each_colony_number(statistics.colony(), [&](const char*, auto number) {
+            numbers.push_back(statistics.has_colony() ? static_cast<double>(number) : unknown);
+        });
+    }
+    if (with.predators) {
+        const std::size_t prey_count = numbers.size() - moment_columns;
+        if (statistics.has_predators()) {
+            const std::vector<double> of = history_numbers(statistics.predators(), {.colony = with.colony});
+            numbers.insert(numbers.end(), of.begin() + moment_columns, of.end());
+        } else {
+            numbers.insert(numbers.end(), prey_count, unknown);
+        }
+    }
     return numbers;
 }
 
-std::string history_heading(const std::vector<std::string>& gene_names) {
+std::string history_heading(const std::vector<std::string>& gene_names, ColonyColumns with) {
     std::string heading;
-    for (const std::string& column : history_columns(gene_names)) {
+    for (const std::string& column : history_columns(gene_names, with)) {
         heading += (heading.empty() ? "" : ",") + text::csv_cell(column);
     }
     return heading + "\n";

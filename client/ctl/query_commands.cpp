@@ -132,8 +132,9 @@ std::string gene_text(const google::protobuf::RepeatedPtrField<v1::GeneStatistic
 }
 
 /// Returns a row for each generation and island. Without bodies, no organism lives or dies: the columns for that are
-/// missing.
+/// missing. Only colonies have the last columns.
 std::string generation_text(const google::protobuf::RepeatedPtrField<v1::GenerationStatistics>& generations) {
+    const core::ColonyColumns with = core::colony_columns_of(generations);
     const bool bodies = std::ranges::any_of(generations, [](const v1::GenerationStatistics& g) {
         return g.alive_count() + g.starved_count() + g.poisoned_count() > 0;
     });
@@ -146,6 +147,14 @@ std::string generation_text(const google::protobuf::RepeatedPtrField<v1::Generat
             columns.push_back({title, Align::Right});
         }
     }
+    for (const char* const title : {"BORN", "OLD", "EATEN"}) {
+        if (with.colony) {
+            columns.push_back({title, Align::Right});
+        }
+    }
+    if (with.predators) {
+        columns.push_back({"PREDATORS", Align::Right});
+    }
     Table table{std::move(columns)};
     for (const v1::GenerationStatistics& g : generations) {
         std::vector<std::string> row{std::to_string(g.generation()),   std::to_string(g.island()),
@@ -156,6 +165,45 @@ std::string generation_text(const google::protobuf::RepeatedPtrField<v1::Generat
             row.insert(row.end(), {std::to_string(g.alive_count()) + "/" + std::to_string(g.organism_count()),
                                    std::to_string(g.starved_count()), std::to_string(g.poisoned_count()),
                                    duration(g.simulated_s())});
+        }
+        if (with.colony) {
+            row.insert(row.end(), {std::to_string(g.colony().born_count()), std::to_string(g.colony().old_count()),
+                                   std::to_string(g.colony().eaten_count())});
+        }
+        if (with.predators) {
+            row.push_back(std::to_string(g.predators().alive_count()));
+        }
+        table.add(std::move(row));
+    }
+    return table.to_text();
+}
+
+/// Returns a row for each island. Only colonies have the last columns.
+std::string live_text(const google::protobuf::RepeatedPtrField<v1::LiveStatistics>& islands) {
+    std::vector<Table::Column> columns;
+    for (const char* const title : {"ISLAND", "ALIVE", "HEALTH", "STARVED", "POISONED", "FOOD EATEN", "POISON EATEN"}) {
+        columns.push_back({title, Align::Right});
+    }
+    const bool colony = std::ranges::any_of(islands, [](const v1::LiveStatistics& of) {
+        return of.born_count() + of.old_count() + of.eaten_count() + of.predator_count() > 0;
+    });
+    for (const char* const title : {"BORN", "OLD", "EATEN", "PREDATORS"}) {
+        if (colony) {
+            columns.push_back({title, Align::Right});
+        }
+    }
+    Table table{std::move(columns)};
+    for (const v1::LiveStatistics& of : islands) {
+        std::vector<std::string> row{std::to_string(of.island()),
+                                     std::to_string(of.alive_count()) + "/" + std::to_string(of.organism_count()),
+                                     fixed(of.health_mean(), 1),
+                                     std::to_string(of.starved_count()),
+                                     std::to_string(of.poisoned_count()),
+                                     std::to_string(of.food_eaten()),
+                                     std::to_string(of.poison_eaten())};
+        if (colony) {
+            row.insert(row.end(), {std::to_string(of.born_count()), std::to_string(of.old_count()),
+                                   std::to_string(of.eaten_count()), std::to_string(of.predator_count())});
         }
         table.add(std::move(row));
     }
@@ -213,21 +261,7 @@ void statistics(const Common& common, const MomentOptions& moment) {
             text += trouble + "\n";
         }
         if (statistics.live_size() > 0) {
-            Table live{{{"ISLAND", Align::Right},
-                        {"ALIVE", Align::Right},
-                        {"HEALTH", Align::Right},
-                        {"STARVED", Align::Right},
-                        {"POISONED", Align::Right},
-                        {"FOOD EATEN", Align::Right},
-                        {"POISON EATEN", Align::Right}}};
-            for (const auto& island : statistics.live()) {
-                live.add({std::to_string(island.island()),
-                          std::to_string(island.alive_count()) + "/" + std::to_string(island.organism_count()),
-                          fixed(island.health_mean(), 1), std::to_string(island.starved_count()),
-                          std::to_string(island.poisoned_count()), std::to_string(island.food_eaten()),
-                          std::to_string(island.poison_eaten())});
-            }
-            text += (moment.is_replay() ? "\nthen\n" : "\nnow\n") + live.to_text();
+            text += (moment.is_replay() ? "\nthen\n" : "\nnow\n") + live_text(statistics.live());
         }
         if (statistics.last_size() > 0) {
             text += (moment.is_replay() ? "\nthe last generation before\n" : "\nthe last generation\n") +
@@ -235,6 +269,10 @@ void statistics(const Common& common, const MomentOptions& moment) {
             for (const auto& island : statistics.last()) {
                 text += "\ngenes of its island " + std::to_string(island.island()) + "\n" +
                         gene_text(island.genes(), statistics.world());
+                if (island.has_predators()) {
+                    text += "\ngenes of the predators of its island " + std::to_string(island.island()) + "\n" +
+                            gene_text(island.predators().genes(), statistics.world());
+                }
             }
         }
         return text;
@@ -265,9 +303,10 @@ v1::History history_of(Caller& caller, const Common& common, const HistoryOption
 }
 
 std::string csv_of(const v1::History& history, const v1::WorldInfo& world) {
-    std::string text = core::history_heading({world.gene_names().begin(), world.gene_names().end()});
+    const core::ColonyColumns with = core::colony_columns_of(history.generations());
+    std::string text = core::history_heading({world.gene_names().begin(), world.gene_names().end()}, with);
     for (const auto& generation : history.generations()) {
-        text += core::history_line(core::history_numbers(generation));
+        text += core::history_line(core::history_numbers(generation, with));
     }
     return text;
 }
@@ -334,6 +373,21 @@ std::string brain_text(const v1::Brain& brain) {
            layer("outputs", brain.outputs(), named(brain.output_names()));
 }
 
+/// Returns what only organisms of colonies have: the species; with births number, age and children.
+std::string colony_text(const v1::OrganismInfo& info) {
+    std::string text;
+    if (info.species() == v1::SPECIES_PREDATOR) {
+        text += "  a predator" +
+                (info.handling_s() > 0 ? ", hunts again in " + fixed(info.handling_s(), 1) + " s" : std::string{}) +
+                "\n";
+    }
+    if (info.has_number()) {
+        text += "  number " + std::to_string(info.number()) + ", age " + duration(info.age_s()) + ", " +
+                std::to_string(info.children()) + (info.children() == 1 ? " child\n" : " children\n");
+    }
+    return text;
+}
+
 void organism(const Common& common, const OrganismOptions& options) {
     Caller caller{common};
     const std::string name = world_at(caller, common, options.moment);
@@ -352,10 +406,14 @@ void organism(const Common& common, const OrganismOptions& options) {
         } else {
             text += info.cause_of_death() == v1::CAUSE_OF_DEATH_REMOVED    ? "removed"
                     : info.cause_of_death() == v1::CAUSE_OF_DEATH_POISONED ? "poisoned"
+                    : info.cause_of_death() == v1::CAUSE_OF_DEATH_EATEN    ? "eaten"
+                    : info.cause_of_death() == v1::CAUSE_OF_DEATH_OLD      ? "died of old age"
                                                                            : "starved";
         }
-        text += ", lived " + duration(info.lived_s()) + "\n  ate " + std::to_string(info.food_eaten()) + " food and " +
-                std::to_string(info.poison_eaten()) + " poison\n";
+        const bool predator = info.species() == v1::SPECIES_PREDATOR;
+        text += ", lived " + duration(info.lived_s()) + "\n  ate " + std::to_string(info.food_eaten()) +
+                (predator ? " prey" : " food and " + std::to_string(info.poison_eaten()) + " poison") + "\n" +
+                colony_text(info);
         if (info.alive()) {
             text += "  at " + fixed(info.x_px(), 1) + ", " + fixed(info.y_px(), 1) + " px, moving " +
                     fixed(info.velocity_x_px_s(), 1) + ", " + fixed(info.velocity_y_px_s(), 1) + " px/s";
@@ -372,11 +430,14 @@ void organism(const Common& common, const OrganismOptions& options) {
             text += brain_text(info.brain());
         }
         if (info.has_placed_tick()) {
-            text += "  placed after tick " + std::to_string(info.placed_tick()) + " of its generation\n";
+            text += (info.parents_size() > 0 ? "  born after tick " : "  placed after tick ") +
+                    std::to_string(info.placed_tick()) + " of its generation\n";
         }
         text += "  radius " + fixed(info.radius_px(), 2) + " px, mass " + fixed(info.mass_kg(), 2) + " kg\n";
         if (info.parents_size() > 0) {
-            text += "  parents in the generation before:";
+            text += info.has_placed_tick() ? "  parents in this generation:"
+                    : info.has_number()    ? "  its id in the generation before:"
+                                           : "  parents in the generation before:";
             for (const std::uint32_t parent : info.parents()) {
                 text += " " + std::to_string(parent);
             }

@@ -58,6 +58,8 @@ float distance_outside() {
     vec2 tilted = abs(vec2(place.x - place.y, place.x + place.y)) * 0.7071;
     tilted = tilted.y > tilted.x ? tilted.yx : tilted;
     return dot(tilted - vec2(2.0 * half_size.x, 0.0), vec2(0.339, 0.941));
+#elif FORM == TRIANGLE               // upright; its tips are 1.5 radii from its centre
+    return max(place.y, 0.866 * abs(place.x) - 0.5 * place.y) - 0.75 * half_size.x;
 #else
     float outside = length(vec2(max(beyond.x, 0.0), place.y)) - half_size.y;
 #if FORM == ARROW

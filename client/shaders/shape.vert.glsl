@@ -22,7 +22,7 @@ flat out float rim;                  // of a body: width of the arc; 0: none
 struct Source {
     vec2 middle;                     // centre of the shape; of lines and arrows: begin. From the camera's centre, in pixels
     vec2 extent;                     // half size; of lines and arrows: from begin to end. In pixels
-    float health;                    // of a body, 0 to 1
+    float health;                    // of a body or triangle, 0 to 1
     vec4 colour;                     // read if `coloured`
 };
 Source read_source(int index);
@@ -45,7 +45,11 @@ void main() {
     arc = vec3(cos(6.2831853 * source.health), sin(6.2831853 * source.health), source.health);
 #endif
     own_fill = coloured ? own_fill : mix(fill_low, fill, source.health);
-#elif FORM == LEAF || FORM == STAR
+#elif FORM == LEAF || FORM == STAR || FORM == TRIANGLE
+#if FORM == TRIANGLE
+    half_size = half_size.xx;
+    own_fill = coloured ? own_fill : mix(fill_low, fill, source.health);
+#endif
     around += 0.5 + 0.5 * half_size;
 #elif FORM == CIRCLE
     half_size = half_size.xx;

@@ -3,9 +3,9 @@
 #include "proto/codec/body.h"
 #include "proto/codec/compression.h"
 #include "proto/codec/framing.h"
+#include "proto/codec/prediction.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <utility>
 
@@ -13,9 +13,11 @@ namespace evod::codec {
 
 namespace {
 
-constexpr std::uint8_t some_are_gone = 1, some_have_come = 2, have_headings = 4; // flags in the parts of a section
+// Flags in the parts of a section.
+constexpr std::uint8_t some_are_gone = 1, some_have_come = 2, have_headings = 4, have_species = 8;
 constexpr std::uint32_t size_bytes = 2;    // size of a radius, health, half width or half height
 constexpr std::uint32_t heading_bytes = 1; // size of a heading
+constexpr std::uint32_t species_bytes = 1; // size of a species
 
 /// Describes a kind of entity: its columns, and which of them can change.
 struct Kind {
@@ -37,65 +39,6 @@ const std::array<Kind, 5> kinds{{
      true, false},
     {"obstacles", &QuantisedSnapshot::obstacles, &QuantisedView::obstacles, nullptr, nullptr, false, true, false},
 }};
-
-/// Predicts, at constant velocity, how far an entity moves in `ticks` ticks if it moved by `displacement` in base_ticks
-/// ticks.
-class Prediction {
-  public:
-    Prediction(std::uint16_t ticks, std::uint16_t base_ticks)
-        : ticks_{ticks}, base_ticks_{std::max<std::uint16_t>(base_ticks, 1)} {}
-
-    std::uint32_t operator()(std::uint32_t displacement) const {
-        if (ticks_ == base_ticks_) {
-            return displacement;
-        }
-        const std::int64_t product = std::int64_t{static_cast<std::int32_t>(displacement)} * ticks_;
-        const std::int64_t rounded_down = product / base_ticks_ - (product % base_ticks_ < 0 ? 1 : 0);
-        return static_cast<std::uint32_t>(rounded_down);
-    }
-
-    /// Computes the residuals of entities at the positions `here` that were at the positions `there`. All columns have
-    /// the same length.
-    void residuals(Numbers here, Numbers there, Numbers displacements, std::uint32_t* to) const {
-        if (ticks_ == base_ticks_) { // the usual case; the compiler uses vector instructions
-            for (std::size_t i = 0; i < here.size(); ++i) {
-                to[i] = here[i] - there[i] - displacements[i];
-            }
-            return;
-        }
-        unsigned all_small = 1;
-        for (const std::uint32_t displacement : displacements) {
-            all_small &= unsigned{displacement + small_ <= 2 * small_};
-        }
-        if (all_small) { // common at full speed, where intervals vary; the compiler uses vector instructions here, too
-            const Prediction predicted = *this; // a local copy, so that the compiler knows that `to` does not alias it
-            for (std::size_t i = 0; i < here.size(); ++i) {
-                to[i] = here[i] - there[i] - predicted.predict_small(displacements[i]);
-            }
-            return;
-        }
-        for (std::size_t i = 0; i < here.size(); ++i) {
-            to[i] = here[i] - there[i] - (*this)(displacements[i]);
-        }
-    }
-
-  private:
-    /// Predicts a displacement of at most small_ in either direction with a multiplication instead of a division. The
-    /// quotient is exact for numbers below 2^31 (Granlund and Montgomery, Division by Invariant Integers using
-    /// Multiplication, 1994, theorem 4.2).
-    std::uint32_t predict_small(std::uint32_t displacement) const {
-        const std::uint32_t product = displacement * ticks_ + ahead_ * base_ticks_; // never negative
-        return static_cast<std::uint32_t>(std::uint64_t{product} * reciprocal_ >> shift_) - ahead_;
-    }
-
-    static constexpr std::uint32_t product_max = 1U << 29; // maximum product of a small displacement and ticks
-    std::uint32_t ticks_, base_ticks_;
-    std::uint32_t small_ = product_max / std::max(ticks_, 1U);
-    std::uint32_t ahead_ = product_max / base_ticks_ + 1;
-    // The shift is 31 + log2 of base_ticks_, rounded up.
-    unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1));
-    std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << shift_) / base_ticks_ + 1);
-};
 
 // ---- matching the entities of two snapshots --------------------------------------------------------------------
 
@@ -155,8 +98,9 @@ Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Sam
     return pairing;
 }
 
-/// Two organisms are the same if their id and radius are equal; two items, if their id and position are equal; two
-/// crates in a tile, if their id and size are equal; two obstacles in a tile, if their id, size and position are equal.
+/// Two organisms are the same if their id, radius and species are equal; two items, if their id and position are equal;
+/// two crates in a tile, if their id and size are equal; two obstacles in a tile, if their id, size and position are
+/// equal.
 /// The boxes of a whole island are the same if follows() is true.
 Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
     if (!have_ids(kind, of_tile)) {
@@ -167,6 +111,10 @@ Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& nex
     };
     const auto width = same_at(base.width, next.width), height = same_at(base.height, next.height);
     const auto x = same_at(base.x, next.x), y = same_at(base.y, next.y);
+    if (kind.health && !base.species.empty() && !next.species.empty()) {
+        const auto species = same_at(base.species, next.species);
+        return pair_by_id(base, next, [=](std::uint32_t i, std::uint32_t j) { return width(i, j) & species(i, j); });
+    }
     if (kind.health) {
         return pair_by_id(base, next, width);
     }
@@ -244,9 +192,9 @@ Column at(Numbers column, Numbers indices) {
 void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,
                  const Pairing& pairing, const BaselineView::Displacements* displacements) {
     const Column& come = pairing.come;
-    writer.number(static_cast<std::uint8_t>((pairing.gone.empty() ? 0 : some_are_gone) |
-                                            (come.empty() ? 0 : some_have_come) |
-                                            (entities.heading.empty() ? 0 : have_headings)));
+    writer.number(static_cast<std::uint8_t>(
+        (pairing.gone.empty() ? 0 : some_are_gone) | (come.empty() ? 0 : some_have_come) |
+        (entities.heading.empty() ? 0 : have_headings) | (entities.species.empty() ? 0 : have_species)));
     if (!pairing.gone.empty()) {
         writer.number(static_cast<std::uint32_t>(pairing.gone.size()));
         writer.rising_column(pairing.gone);
@@ -266,6 +214,9 @@ void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entit
     }
     if (!entities.heading.empty()) {
         writer.planes(entities.heading, come, heading_bytes);
+    }
+    if (!entities.species.empty()) {
+        writer.planes(entities.species, come, species_bytes);
     }
     if (kind.displacements) {
         const Column still(displacements ? 0 : come.size(), 0);
@@ -305,13 +256,21 @@ struct Section {
 };
 
 /// Returns all columns of a section.
-std::array<Column*, 8> columns_of(Section& section) {
-    return {&section.entities.id,     &section.entities.x,       &section.entities.y,      &section.entities.width,
-            &section.entities.height, &section.entities.heading, &section.displacements.x, &section.displacements.y};
+std::array<Column*, 9> columns_of(Section& section) {
+    Entities& of = section.entities;
+    return {&of.id,
+            &of.x,
+            &of.y,
+            &of.width,
+            &of.height,
+            &of.heading,
+            &of.species,
+            &section.displacements.x,
+            &section.displacements.y};
 }
 
 /// Inserts the entities `come` into `stayed`: ordered by id, or at the end if the kind has no ids.
-void merge(BodyReader& reader, Section& stayed, Section& come) {
+void merge(BodyReader& reader, Section& stayed, Section come) {
     const std::size_t stayed_count = stayed.entities.x.size(), come_count = come.entities.x.size();
     Column order;
     if (!come.entities.id.empty() && stayed_count > 0) {
@@ -342,13 +301,47 @@ struct Step {
     bool of_tile;
 };
 
+/// Reads the entities of one kind that have come.
+///
+/// count_max  the number of entities of this kind in the snapshot.
+Section read_come(const Kind& kind, BodyReader& reader, unsigned parts, std::uint32_t count_max, const Step& step) {
+    Section come;
+    const auto come_count = reader.number<std::uint32_t>();
+    // Each entity needs at least the bytes of its position, so the remaining bytes limit the memory that is
+    // allocated.
+    if (come_count > count_max || reader.rest_bytes() / (2 * std::size_t{step.position_bytes}) < come_count) {
+        reader.refuse("adds more entities than its count says");
+        return {};
+    }
+    if (have_ids(kind, step.of_tile)) {
+        come.entities.id = reader.rising_column(come_count, std::uint64_t{1} << 32);
+    }
+    come.entities.x = reader.planes(come_count, step.position_bytes);
+    come.entities.y = reader.planes(come_count, step.position_bytes);
+    if (kind.sizes) {
+        come.entities.width = reader.planes(come_count, size_bytes);
+        come.entities.height = reader.planes(come_count, size_bytes);
+    }
+    if (parts & have_headings) {
+        come.entities.heading = reader.planes(come_count, heading_bytes);
+    }
+    if (parts & have_species) {
+        come.entities.species = reader.planes(come_count, species_bytes);
+    }
+    if (kind.displacements) {
+        come.displacements.x = reader.column(come_count);
+        come.displacements.y = reader.column(come_count);
+    }
+    return come;
+}
+
 /// Reads the section of one kind of entity.
 ///
 /// base   the section of this kind in the baseline.
 /// count  the number of entities of this kind in the snapshot.
 Section read_section(const Kind& kind, BodyReader& reader, Section base, std::uint32_t count, const Step& step) {
     const auto parts = reader.number<std::uint8_t>();
-    const unsigned parts_max = kind.health ? 7 : 3; // only organisms have headings
+    const unsigned parts_max = kind.health ? 15 : 3; // only organisms have headings and species
     if (parts > parts_max) {
         reader.refuse("has parts " + std::to_string(parts) + ", not 0 to " + std::to_string(parts_max));
         return {};
@@ -357,6 +350,11 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
     const bool headings = (parts & have_headings) != 0;
     if (base_count > 0 && headings != base.entities.has_headings() && count > 0) {
         reader.refuse(headings ? "has headings, unlike its base" : "has no headings, unlike its base");
+        return {};
+    }
+    const bool species = (parts & have_species) != 0;
+    if (base_count > 0 && species != base.entities.has_species() && count > 0) {
+        reader.refuse(species ? "has species, unlike its base" : "has no species, unlike its base");
         return {};
     }
     Section section = std::move(base);
@@ -371,32 +369,7 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
             *column = without(std::move(*column), gone);
         }
     }
-    Section come;
-    if (parts & some_have_come) {
-        const auto come_count = reader.number<std::uint32_t>();
-        // Each entity needs at least the bytes of its position, so the remaining bytes limit the memory that is
-        // allocated.
-        if (come_count > count || reader.rest_bytes() / (2 * std::size_t{step.position_bytes}) < come_count) {
-            reader.refuse("adds more entities than its count says");
-            return {};
-        }
-        if (have_ids(kind, step.of_tile)) {
-            come.entities.id = reader.rising_column(come_count, std::uint64_t{1} << 32);
-        }
-        come.entities.x = reader.planes(come_count, step.position_bytes);
-        come.entities.y = reader.planes(come_count, step.position_bytes);
-        if (kind.sizes) {
-            come.entities.width = reader.planes(come_count, size_bytes);
-            come.entities.height = reader.planes(come_count, size_bytes);
-        }
-        if (headings) {
-            come.entities.heading = reader.planes(come_count, heading_bytes);
-        }
-        if (kind.displacements) {
-            come.displacements.x = reader.column(come_count);
-            come.displacements.y = reader.column(come_count);
-        }
-    }
+    Section come = parts & some_have_come ? read_come(kind, reader, parts, count, step) : Section{};
     const std::size_t stayed_count = section.entities.x.size();
     if (!reader.damage() && stayed_count + come.entities.x.size() != count) {
         reader.refuse("has " + std::to_string(stayed_count + come.entities.x.size()) + " " + kind.name + ", not " +
@@ -439,7 +412,7 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
         reader.refuse("moves a number out of its range");
     }
     if (!reader.damage() && !come.entities.x.empty()) {
-        merge(reader, section, come);
+        merge(reader, section, std::move(come));
     }
     return section;
 }
@@ -463,7 +436,8 @@ QuantisedView::QuantisedView(const QuantisedSnapshot& snapshot)
     : position_bytes{snapshot.position_bytes}, of_tile{snapshot.of_tile} {
     for (const Kind& kind : kinds) {
         const Entities& entities = snapshot.*kind.entities;
-        this->*kind.seen = {entities.id, entities.x, entities.y, entities.width, entities.height, entities.heading};
+        this->*kind.seen = {entities.id,     entities.x,       entities.y,      entities.width,
+                            entities.height, entities.heading, entities.species};
     }
 }
 
@@ -480,7 +454,8 @@ bool follows(const QuantisedView& next, const QuantisedView& base) {
     };
     const bool both_have_organisms = !next.organisms.x.empty() && !base.organisms.x.empty();
     return next.position_bytes == base.position_bytes && next.of_tile == base.of_tile &&
-           (!both_have_organisms || next.organisms.heading.empty() == base.organisms.heading.empty()) &&
+           (!both_have_organisms || (next.organisms.heading.empty() == base.organisms.heading.empty() &&
+                                     next.organisms.species.empty() == base.organisms.species.empty())) &&
            (next.of_tile || (same_sizes(next.crates, base.crates) && same_sizes(next.obstacles, base.obstacles) &&
                              same(next.obstacles.x, base.obstacles.x) && same(next.obstacles.y, base.obstacles.y)));
 }

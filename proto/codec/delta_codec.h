@@ -40,7 +40,7 @@ struct Baseline {
 
 /// Non-owning views of a QuantisedSnapshot and a Baseline, or of the parts of their columns that belong to one tile.
 struct EntitiesView {
-    std::span<const std::uint32_t> id, x, y, width, height, heading{};
+    std::span<const std::uint32_t> id, x, y, width, height, heading{}, species{};
 };
 struct QuantisedView {
     QuantisedView() = default;
@@ -64,7 +64,8 @@ struct BaselineView {
 Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 
 /// Returns whether `next` can be encoded as a delta against `base`. All boxes of a whole island must be the same,
-/// except for the positions of crates. If both have organisms, the organisms of both or of neither must have headings.
+/// except for the positions of crates. If both have organisms, the organisms of both or of neither must have headings,
+/// and likewise species.
 bool follows(const QuantisedView& next, const QuantisedView& base);
 
 /// Returns the baseline of `next`, which is `ticks` ticks after `base`. Encoder and decoder both compute it.

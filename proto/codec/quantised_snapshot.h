@@ -22,6 +22,7 @@ struct Entities {
     Column width;     // organisms: radius; boxes: half width
     Column height;    // organisms: health; boxes: half height
     Column heading{}; // organisms that have a heading, if the viewer wants it
+    Column species{}; // organisms of worlds with predators, if the viewer wants it: a number of evod::v1::Species
 
     // These functions return the values of entity i.
     std::uint32_t id_of(std::size_t i) const { return id.empty() ? static_cast<std::uint32_t>(i) : id[i]; }
@@ -30,6 +31,8 @@ struct Entities {
     float radius_px(std::size_t i) const { return px_of(width[i]); }
     float health(std::size_t i) const { return px_of(height[i]); }
     bool has_headings() const { return !heading.empty(); }
+    bool has_species() const { return !species.empty(); }
+    std::uint32_t species_of(std::size_t i) const { return species.empty() ? 0 : species[i]; }
     float heading_radians(std::size_t i) const { return radians_of(heading[i]); }
     float half_width_px(std::size_t i) const { return px_of(width[i]); }
     float half_height_px(std::size_t i) const { return px_of(height[i]); }

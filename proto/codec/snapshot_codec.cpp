@@ -14,15 +14,16 @@ namespace evod::codec {
 namespace {
 
 using Floats = google::protobuf::RepeatedField<float>;
-using Ids = google::protobuf::RepeatedField<std::uint32_t>;
+using Integers = google::protobuf::RepeatedField<std::uint32_t>;
 
-constexpr float heading_max = 3.1416f; // radians: pi, and a little for rounding
+constexpr float heading_max = 3.1416f;     // radians: pi, and a little for rounding
+constexpr std::uint32_t species_max = 255; // more species than there are, but all that fit in CODEC_DELTA
 
 Damage wrong(const std::string& field, const std::string& got, const std::string& allowed) {
     return Damage{"a snapshot's " + field + " is " + got + ", not " + allowed};
 }
 
-void set_ids(const Column& column, Ids& to) {
+void set_integers(const Column& column, Integers& to) {
     to.Add(column.begin(), column.end());
 }
 
@@ -35,7 +36,7 @@ void set_values(const Column& column, Floats& to) {
 }
 
 void set_items(const Entities& items, evod::v1::PlainItems& to) {
-    set_ids(items.id, *to.mutable_id());
+    set_integers(items.id, *to.mutable_id());
     set_values(items.x, *to.mutable_x_px());
     set_values(items.y, *to.mutable_y_px());
 }
@@ -64,6 +65,18 @@ std::optional<Damage> read_headings(const Floats& from, std::uint32_t count, Col
     return std::nullopt;
 }
 
+std::optional<Damage> read_species(const Integers& from, std::uint32_t count, Column& to) {
+    if (static_cast<std::uint32_t>(from.size()) != count) {
+        return count_mismatch("plain.organisms.species", from.size(), count);
+    }
+    const auto bad = std::ranges::find_if(from, [](std::uint32_t species) { return species > species_max; });
+    if (bad != from.end()) {
+        return wrong("plain.organisms.species", std::to_string(*bad), "0 to " + std::to_string(species_max));
+    }
+    to.assign(from.begin(), from.end());
+    return std::nullopt;
+}
+
 struct PlainColumn {
     const char* field;
     const Floats& from;
@@ -73,7 +86,7 @@ struct PlainColumn {
 /// Quantises the columns of one kind and checks each. Returns the first invalid field, if any.
 ///
 /// ids  the ids of the entities; nullptr: this kind has no ids.
-std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, const Ids* ids,
+std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, const Integers* ids,
                                  std::initializer_list<PlainColumn> columns, Entities& to) {
     const std::string path = "plain." + kind + ".";
     const auto refused = [&](const std::string& field, const std::string& got, const std::string& allowed) {
@@ -108,7 +121,8 @@ std::optional<Damage> read_plain(const std::string& kind, std::uint32_t count, c
 void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame) {
     for (const auto part : snapshot_parts) {
         const Entities& entities = snapshot.*part;
-        for (const Column* column : {&entities.id, &entities.y, &entities.width, &entities.height, &entities.heading}) {
+        for (const Column* column :
+             {&entities.id, &entities.y, &entities.width, &entities.height, &entities.heading, &entities.species}) {
             const bool optional = column != &entities.y; // not all kinds have this column
             if (column->size() != entities.x.size() && !(optional && column->empty())) {
                 throw std::invalid_argument{"a snapshot has columns of different lengths"};
@@ -125,7 +139,7 @@ void encode_plain(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& fr
     frame.set_codec(evod::v1::CODEC_PLAIN);
     evod::v1::PlainSnapshot& plain = *frame.mutable_plain();
     evod::v1::PlainOrganisms& organisms = *plain.mutable_organisms();
-    set_ids(snapshot.organisms.id, *organisms.mutable_id());
+    set_integers(snapshot.organisms.id, *organisms.mutable_id());
     set_values(snapshot.organisms.x, *organisms.mutable_x_px());
     set_values(snapshot.organisms.y, *organisms.mutable_y_px());
     set_values(snapshot.organisms.width, *organisms.mutable_radius_px());
@@ -133,6 +147,7 @@ void encode_plain(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& fr
     for (const std::uint32_t steps : snapshot.organisms.heading) {
         organisms.add_heading(radians_of(steps));
     }
+    set_integers(snapshot.organisms.species, *organisms.mutable_species());
     set_items(snapshot.food, *plain.mutable_food());
     set_items(snapshot.poison, *plain.mutable_poison());
     set_boxes(snapshot.crates, *plain.mutable_crates());
@@ -184,6 +199,9 @@ Result<ReceivedSnapshot> decode_plain(evod::v1::SnapshotFrame frame) {
                                               entities->organisms);
     if (!damage && !organisms.heading().empty()) {
         damage = read_headings(organisms.heading(), frame.organism_count(), entities->organisms.heading);
+    }
+    if (!damage && !organisms.species().empty()) {
+        damage = read_species(organisms.species(), frame.organism_count(), entities->organisms.species);
     }
     const auto read_items = [&](const char* kind, std::uint32_t count, const evod::v1::PlainItems& from, Entities& to) {
         if (!damage) {

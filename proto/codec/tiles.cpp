@@ -177,7 +177,8 @@ QuantisedView SnapshotTiles::full(std::uint32_t tile) {
                                column(2, from.y),
                                column(3, from.width),
                                column(4, from.height),
-                               column(5, from.heading)};
+                               column(5, from.heading),
+                               column(6, from.species)};
     }
     return view;
 }
@@ -259,12 +260,15 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
                 }
             }
         };
-        for (const auto column :
-             {&Entities::id, &Entities::x, &Entities::y, &Entities::width, &Entities::height, &Entities::heading}) {
+        for (const auto column : {&Entities::id, &Entities::x, &Entities::y, &Entities::width, &Entities::height,
+                                  &Entities::heading, &Entities::species}) {
             gather(column);
         }
         if (to.has_headings() && to.heading.size() != to.x.size()) {
             return Damage{"a snapshot has headings only in some tiles"};
+        }
+        if (to.has_species() && to.species.size() != to.x.size()) {
+            return Damage{"a snapshot has species only in some tiles"};
         }
     }
     return snapshot;

@@ -93,7 +93,7 @@ class SnapshotTiles {
         std::vector<std::uint32_t> begin; // for each tile its first position in `order`, then the end of the last tile
         // The columns of the snapshot in the order of `order`. Only the parts of gathered tiles are filled. A column is
         // nullptr if it is not allocated yet, or if the kind does not have it.
-        std::array<std::unique_ptr<std::uint32_t[]>, 6> columns;
+        std::array<std::unique_ptr<std::uint32_t[]>, 7> columns;
     };
     std::span<const std::uint32_t> of(std::size_t part, std::uint32_t tile) const;
     /// A position within a tile, in 1/256 of the tile's side.

@@ -264,6 +264,7 @@ class Output {
         several_islands_ = experiment.parameters.island_count > 1;
         has_births_ = parameters::has_births(experiment.parameters);
         is_colony_ = simulation::is_colony(experiment.parameters);
+        colony_columns_ = replay::colony_columns_of(experiment.parameters);
         csv_path_ = options.csv;
         every_ = options.every;
         json_ = options.json;
@@ -325,7 +326,8 @@ class Output {
             return cannot_write_csv(std::strerror(errno));
         }
         errno = 0;
-        table_.emplace(csv_->stream(), replay::Table::Format::Csv, replay::statistics_columns(gene_names_));
+        table_.emplace(csv_->stream(), replay::Table::Format::Csv,
+                       replay::statistics_columns(gene_names_, colony_columns_));
         return csv_->stream().flush() ? base::Result<void>{} : cannot_write_csv(std::strerror(errno));
     }
     /// Writes the rows of the stored generations to the CSV file.
@@ -356,7 +358,7 @@ class Output {
     void add_to_csv(const std::vector<simulation::GenerationStatistics>& generation) {
         for (const simulation::GenerationStatistics& statistics : generation) {
             if (table_) {
-                replay::write_row(*table_, statistics, gene_names_);
+                replay::write_row(*table_, statistics, gene_names_, colony_columns_);
             }
         }
     }
@@ -369,6 +371,7 @@ class Output {
 
     std::vector<std::string> gene_names_;
     std::vector<experiments::SpeciesOfInterval> intervals_;
+    replay::ColonyColumns colony_columns_ = replay::ColonyColumns::None;
     bool several_islands_ = false, json_ = false, has_births_ = false, is_colony_ = false;
     std::uint32_t every_ = 1;
     std::string csv_path_;

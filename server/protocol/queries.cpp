@@ -159,7 +159,8 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
                                            [first](const auto& rows) { return rows.front().generation < first; });
     std::size_t count = 0;
     for (; generation != history.end() && generation->front().generation <= last; ++generation) {
-        count += (query.has_island() ? 1 : generation->size()) * generation->front().genes.size();
+        const simulation::GenerationStatistics& row = generation->front();
+        count += (query.has_island() ? 1 : generation->size()) * row.genes.size() * (1 + row.predators.size());
         if (!answer.generations.empty() && count > history_statistics_max * evolution::body_gene_count) {
             answer.next_generation = generation->front().generation;
             break;
@@ -297,8 +298,8 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
     }
     answer.genes =
         born.genes.middleCols(static_cast<Eigen::Index>(ids.begin), static_cast<Eigen::Index>(ids.end - ids.begin));
-    if (!born.parents.empty()) {
-        answer.parents.assign(born.parents.data() + ids.begin, born.parents.data() + ids.end);
+    for (std::size_t id = ids.begin; id < ids.end && (!born.parents.empty() || island.has_births()); ++id) {
+        answer.parents.push_back(shown_parents(island, static_cast<std::uint32_t>(id)));
     }
     if (const auto founders = world.islands().founders(island.index()); !founders.empty()) {
         answer.founders.assign(founders.begin() + ids.begin, founders.begin() + ids.end);

@@ -150,6 +150,27 @@ v1::DamagedWorld to_proto(const simulation::DamagedWorld& world) {
     return to;
 }
 
+namespace {
+
+v1::ColonyStatistics to_proto(const simulation::ColonyStatistics& statistics) {
+    v1::ColonyStatistics to;
+    to.set_first_count(statistics.first_count);
+    to.set_lowest_count(statistics.lowest_count);
+    to.set_count_mean(statistics.count_mean);
+    to.set_born_count(statistics.born_count);
+    to.set_refused_count(statistics.refused_count);
+    to.set_without_room_count(statistics.without_room_count);
+    to.set_eaten_count(statistics.eaten_count);
+    to.set_old_count(statistics.old_count);
+    to.set_died_count(statistics.died_count);
+    to.set_children_mean(statistics.children_mean);
+    to.set_children_variance(statistics.children_variance);
+    to.set_age_mean_s(statistics.age_mean_s);
+    return to;
+}
+
+} // namespace
+
 v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statistics) {
     v1::GenerationStatistics to;
     to.set_generation(statistics.generation);
@@ -189,6 +210,12 @@ v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statis
     to.set_speed_limit_count(statistics.speed_limit_count);
     to.set_best_organism(statistics.best_organism);
     to.set_simulated_s(statistics.simulated_s);
+    if (statistics.colony) {
+        *to.mutable_colony() = to_proto(*statistics.colony);
+    }
+    if (!statistics.predators.empty()) {
+        *to.mutable_predators() = to_proto(statistics.predators.front());
+    }
     return to;
 }
 
@@ -202,6 +229,10 @@ v1::LiveStatistics to_proto(const simulation::LiveStatistics& statistics, std::u
     to.set_poison_eaten(statistics.poison_eaten);
     to.set_starved_count(statistics.starved_count);
     to.set_poisoned_count(statistics.poisoned_count);
+    to.set_eaten_count(statistics.eaten_count);
+    to.set_old_count(statistics.old_count);
+    to.set_born_count(statistics.born_count);
+    to.set_predator_count(statistics.predator_count);
     return to;
 }
 
@@ -222,6 +253,36 @@ void set_brain(const evolution::BrainLayout& layout, const simulation::Activatio
 
 } // namespace
 
+namespace {
+
+/// Sets what only organisms of colonies have.
+void set_colony(const simulation::World& world, const simulation::Island& island, std::uint32_t id,
+                v1::OrganismInfo& to) {
+    const double tick_s = world.parameters().active.tick_s;
+    const auto tick = static_cast<std::uint32_t>(world.moment().generation_tick);
+    if (island.species_of(id) == simulation::Species::Predator) {
+        to.set_species(v1::SPECIES_PREDATOR);
+    }
+    if (island.has_births()) {
+        to.set_number(island.number_of(id));
+        to.set_age_s(island.age_ticks(id, tick) * tick_s);
+        to.set_children(island.life_records().children[id]);
+    }
+    if (const auto body = island.body_of(id)) {
+        const std::uint32_t hunts_from = island.living().hunts_from[*body], next = tick + 1;
+        to.set_handling_s(hunts_from > next ? (hunts_from - next) * tick_s : 0);
+    }
+}
+
+} // namespace
+
+evolution::Parents shown_parents(const simulation::Island& island, std::uint32_t id) {
+    const std::vector<evolution::Parents>& bred = island.born().parents;
+    return id >= island.bred_count() ? island.parents_of_child(id)
+           : bred.empty()            ? simulation::Island::no_parents
+                                     : bred[id];
+}
+
 v1::OrganismInfo organism_info(const simulation::World& world, const simulation::Island& island, std::uint32_t id) {
     const auto& parameters = world.parameters().active;
     const auto& born = island.born();
@@ -233,13 +294,14 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     for (const float gene : evolution::column(born.genes, id)) {
         to.add_genes(gene);
     }
-    const bool is_placed = id >= island.bred_count();
-    if (is_placed) {
+    if (id >= island.bred_count()) { // it was placed or born
         to.set_placed_tick(island.placed_tick(id));
-    } else if (!born.parents.empty()) {
-        to.add_parents(born.parents[id].first);
-        if (born.parents[id].second != born.parents[id].first) {
-            to.add_parents(born.parents[id].second);
+    }
+    const evolution::Parents parents = shown_parents(island, id);
+    if (parents != simulation::Island::no_parents) {
+        to.add_parents(parents.first);
+        if (parents.second != parents.first) {
+            to.add_parents(parents.second);
         }
     }
     const auto body = island.body_of(id);
@@ -259,6 +321,9 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     to.set_target_y_px(physics::to_px(intention.target_y));
     if (const auto activations = world.activations(island, id)) {
         set_brain(island.brain(), *activations, *to.mutable_brain());
+    }
+    if (island.is_colony()) {
+        set_colony(world, island, id, to);
     }
     const simulation::LifeRecords& life_records = island.life_records();
     to.set_food_eaten(life_records.food_eaten[id]);

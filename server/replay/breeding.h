@@ -30,8 +30,8 @@ struct Bred {
 /// stop  stops the work; the result is then a refusal with UNAVAILABLE.
 ///
 /// Refused for the same reasons as GenerationReader::read(). Also refused if the generation or the island does not
-/// exist, if no generation has bred yet, or if the run follows another model. Refused with DATA_LOSS if the stored
-/// descendants differ.
+/// exist, if no generation has bred yet, if the run follows another model, or if it cannot show a colony. Refused with
+/// DATA_LOSS if the stored descendants differ.
 base::Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
                                const base::StopCheck& stop);
 

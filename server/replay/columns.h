@@ -11,12 +11,18 @@
 
 namespace evod::replay {
 
-/// The columns of the statistics table.
+/// Which columns of colonies the statistics table has.
+enum class ColonyColumns { None, Prey, Both };
+ColonyColumns colony_columns_of(const parameters::Parameters& parameters);
+
+/// The columns of the statistics table. Those of predators have the prefix predators_.
 ///
 /// gene_names  names of the first genes of the chromosomes, all of which the table then contains.
-std::vector<std::string> statistics_columns(std::span<const std::string> gene_names);
+std::vector<std::string> statistics_columns(std::span<const std::string> gene_names,
+                                            ColonyColumns colony = ColonyColumns::None);
+/// Writes a row. Cells of a species that is not there are empty.
 void write_row(Table& table, const simulation::GenerationStatistics& statistics,
-               std::span<const std::string> gene_names);
+               std::span<const std::string> gene_names, ColonyColumns colony = ColonyColumns::None);
 
 /// Returns the columns of the table `population`, with which another world can begin.
 std::vector<std::string> population_columns(std::span<const std::string> gene_names);

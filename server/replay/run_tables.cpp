@@ -242,14 +242,15 @@ std::string kind_of(const v1::Request& request) {
 
 Result<void> write_generations(const RunSource& run, std::ostream& out, Table::Format format) {
     const std::vector<std::string> gene_names = gene_names_of(run.file.identity().parameters);
-    Table table{out, format, statistics_columns(gene_names)};
+    const ColonyColumns colony = colony_columns_of(run.file.identity().parameters);
+    Table table{out, format, statistics_columns(gene_names, colony)};
     return for_each_generation(run, out, [&](std::uint64_t generation) -> Result<void> {
         const auto statistics = run.file.generations().statistics_of(generation);
         if (!statistics) {
             return statistics.error();
         }
         for (const simulation::GenerationStatistics& island : *statistics) {
-            write_row(table, island, gene_names);
+            write_row(table, island, gene_names, colony);
         }
         return {};
     });

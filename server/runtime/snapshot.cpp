@@ -11,7 +11,7 @@ void copy(const simulation::Items& items, ItemsSnapshot& to) {
     to.present_count = items.present_count();
 }
 
-void copy_organisms(const simulation::Island& island, OrganismsSnapshot& to) {
+void copy_organisms(const simulation::Island& island, bool with_species, OrganismsSnapshot& to) {
     const physics::Circles& bodies = island.bodies();
     const auto copy = [&](const auto& from, auto& column) {
         column.assign(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(bodies.size()));
@@ -26,6 +26,10 @@ void copy_organisms(const simulation::Island& island, OrganismsSnapshot& to) {
     } else {
         to.heading.clear(); // the memory may come from a snapshot of another world
     }
+    to.species.resize(with_species ? to.place_of.size() : 0);
+    for (std::size_t id = 0; id < to.species.size(); ++id) {
+        to.species[id] = island.species_of(static_cast<std::uint32_t>(id));
+    }
     to.alive_count = island.alive_count();
 }
 
@@ -38,7 +42,7 @@ void copy(const simulation::Island& island, const parameters::Parameters& parame
         to.height_px = parameters.island_height_px;
     }
     to.live = island.live_counts();
-    copy_organisms(island, to.organisms);
+    copy_organisms(island, parameters.predator_count > 0, to.organisms);
     copy(island.food(), to.food);
     copy(island.poison(), to.poison);
     const physics::Boxes& boxes = island.boxes();

@@ -28,6 +28,8 @@ struct OrganismsSnapshot {
     base::Column<physics::Coordinate> x, y;
     base::Column<float> radius_px, health;
     base::Column<float> heading; // radians; empty if organisms have no heading
+    // Key: id of an organism, alive or dead. Empty in worlds without predators.
+    std::vector<simulation::Species> species;
     std::uint32_t alive_count = 0;
 };
 

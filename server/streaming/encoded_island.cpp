@@ -94,7 +94,7 @@ void EncodedIsland::count_memory() {
                         sizeof(codec::QuantisedSnapshot) + 2 * allocation_bytes;
     for (const auto part : codec::snapshot_parts) {
         const codec::Entities& of = (*snapshot_).*part;
-        for (const codec::Column* column : {&of.id, &of.x, &of.y, &of.width, &of.height, &of.heading}) {
+        for (const codec::Column* column : {&of.id, &of.x, &of.y, &of.width, &of.height, &of.heading, &of.species}) {
             bytes += column->empty() ? 0 : column->size() * sizeof(std::uint32_t) + allocation_bytes;
         }
     }

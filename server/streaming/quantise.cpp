@@ -71,7 +71,7 @@ codec::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin,
 }
 
 codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes,
-                             bool with_headings) {
+                             OptionalColumns with) {
     codec::Entities to;
     Column indices;
     resize_columns(organisms.alive_count, to.id, indices);
@@ -90,9 +90,14 @@ codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::u
     fetch(organisms.y, unchanged, to.y);
     fetch(organisms.radius_px, codec::size_in_steps, to.width);
     fetch(organisms.health, codec::size_in_steps, to.height);
-    if (with_headings && !organisms.heading.empty()) {
+    if (with.headings && !organisms.heading.empty()) {
         to.heading.resize(kept);
         fetch(organisms.heading, codec::heading_in_steps, to.heading);
+    }
+    if (with.species && !organisms.species.empty()) {
+        to.species.resize(kept);
+        std::ranges::transform(to.id, to.species.begin(),
+                               [&](std::uint32_t id) { return static_cast<std::uint32_t>(organisms.species[id]); });
     }
     to_steps(to.x, position_bytes);
     to_steps(to.y, position_bytes);
@@ -101,11 +106,11 @@ codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::u
 
 } // namespace
 
-codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island, bool with_headings) {
+codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island, OptionalColumns with) {
     const std::uint32_t position_bytes = codec::position_bytes_of(island.width_px, island.height_px);
     const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
     return {.position_bytes = position_bytes,
-            .organisms = organisms_of(island.organisms, position_bytes, with_headings),
+            .organisms = organisms_of(island.organisms, position_bytes, with),
             .food = items_of(island.food, position_bytes),
             .poison = items_of(island.poison, position_bytes),
             .crates = boxes_of(island.boxes, 0, crates, position_bytes),

@@ -7,9 +7,16 @@
 #include "proto/codec/quantised_snapshot.h"
 #include "server/runtime/snapshot.h"
 
+#include <compare>
+
 namespace evod::streaming {
 
-/// with_headings  whether organisms that have a heading keep it.
-codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island, bool with_headings = false);
+/// What an encoding of organisms contains only if a viewer wants it, and if the organisms have it.
+struct OptionalColumns {
+    bool headings = false, species = false;
+    friend auto operator<=>(const OptionalColumns&, const OptionalColumns&) = default;
+};
+
+codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island, OptionalColumns with = {});
 
 } // namespace evod::streaming

@@ -170,7 +170,7 @@ void SnapshotStreams::each_newest(const SnapshotSubscription& subscription, cons
 }
 
 SnapshotStreams::GroupName SnapshotStreams::group_of(const SnapshotSubscription& subscription) {
-    return {subscription.world, subscription.rate_hz, subscription.form(), subscription.headings};
+    return {subscription.world, subscription.rate_hz, subscription.form(), subscription.with};
 }
 
 runtime::WorldDemands SnapshotStreams::demand() const {
@@ -278,20 +278,22 @@ void SnapshotStreams::advance(InProgress& of, std::size_t& steps_left) {
     }
     for (; steps_left > 0 && of.next_island < snapshot.islands.size(); ++of.next_island) {
         const runtime::IslandSnapshot& island = snapshot.islands[of.next_island];
-        // Shared by the viewers of all rates and forms; index: whether with headings.
-        std::array<std::shared_ptr<EncodedIsland>, 2> encodings;
+        std::map<OptionalColumns, std::shared_ptr<EncodedIsland>>
+            encodings; // shared by the viewers of all rates and forms
         std::size_t steps = 1;
         for (Viewer& viewer : viewers) {
             if (viewer.subscription->island && *viewer.subscription->island != island.island) {
                 continue;
             }
-            const bool headings = viewer.subscription->headings && !island.organisms.heading.empty();
-            std::shared_ptr<EncodedIsland>& encoded = encodings[headings];
+            const OptionalColumns wanted = viewer.subscription->with;
+            const OptionalColumns with{.headings = wanted.headings && !island.organisms.heading.empty(),
+                                       .species = wanted.species && !island.organisms.species.empty()};
+            std::shared_ptr<EncodedIsland>& encoded = encodings[with];
             if (!encoded) {
                 v1::SnapshotFrame about = frame_without_entities(snapshot, island);
                 about.set_sequence(++sequence_);
                 encoded =
-                    std::make_shared<EncodedIsland>(std::move(about), quantise(island, headings), compressor_, memory_);
+                    std::make_shared<EncodedIsland>(std::move(about), quantise(island, with), compressor_, memory_);
             }
             StreamedSnapshotPtr& newest = viewer.group->newest[island.island];
             if (!newest || newest->sequence() != encoded->sequence()) { // this viewer is the first of its group

@@ -72,7 +72,7 @@ class SnapshotStreams {
         std::string world;
         double rate_hz;
         Form form;
-        bool headings;
+        OptionalColumns with;
         friend auto operator<=>(const GroupName&, const GroupName&) = default;
     };
     struct Group {

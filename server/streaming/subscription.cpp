@@ -38,7 +38,7 @@ SnapshotSubscription to_subscription(const v1::SubscribeSnapshots& request, cons
     if (request.has_unacknowledged_max()) {
         subscription.unacknowledged_max = request.unacknowledged_max();
     }
-    subscription.headings = request.headings();
+    subscription.with = {.headings = request.headings(), .species = request.species()};
     if (request.has_view()) {
         subscription.set_view(request.view());
     }

@@ -9,6 +9,7 @@
 #include "server/runtime/clock.h"
 #include "server/streaming/bandwidth.h"
 #include "server/streaming/delta_stream.h"
+#include "server/streaming/quantise.h"
 
 #include <cstdint>
 #include <map>
@@ -32,7 +33,7 @@ struct SnapshotSubscription {
     v1::Compression compression = v1::COMPRESSION_NONE;
     // Limit of unacknowledged snapshots of one island; nullopt: no limit.
     std::optional<std::uint32_t> unacknowledged_max;
-    bool headings = false;              // whether snapshots contain headings
+    OptionalColumns with;               // what snapshots contain in addition
     std::optional<v1::View> view;       // CODEC_DELTA only: snapshots are sent in tiles
     std::optional<Bandwidth> bandwidth; // the bandwidth limit of the view
 

@@ -54,6 +54,8 @@ inline void require_valid(const codec::ReceivedSnapshot& snapshot) {
         }
         require(kind.heading.empty() || (part == &codec::QuantisedSnapshot::organisms && kind.heading.size() == size));
         require(std::ranges::all_of(kind.heading, [](auto steps) { return steps < codec::heading_steps; }));
+        require(kind.species.empty() || (part == &codec::QuantisedSnapshot::organisms && kind.species.size() == size));
+        require(std::ranges::all_of(kind.species, [](auto species) { return species < 256; }));
     }
     require(std::ranges::adjacent_find(snapshot.tiles, std::ranges::greater_equal{}, &codec::DecodedTile::tile) ==
             snapshot.tiles.end());

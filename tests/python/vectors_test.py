@@ -82,7 +82,7 @@ def together(tiles):
 
 
 COUNTS = ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")
-COLUMNS = ("x", "y", "radius", "health", "half_width", "half_height", "heading")
+COLUMNS = ("x", "y", "radius", "health", "half_width", "half_height", "heading", "species")
 
 
 def mutated(snapshot, tile, change, where, value):

@@ -87,7 +87,7 @@ class Decoder:
     def section(self, body, name, sizes, base, ticks, position_bytes):
         parts, come = body.number("<u1"), {}
         fields = [*(["id"] if name in self.have_ids else []), "x", "y", *sizes, *(["heading"] if parts & 4 else []),
-                  *(["dx", "dy"] if name in MOVE else [])]
+                  *(["species"] if parts & 8 else []), *(["dx", "dy"] if name in MOVE else [])]
         stayed = {field: base[field] if base and len(base["x"]) else numpy.zeros(0, numpy.int64) for field in fields}
         if parts & 1:
             gone = body.rising_column(body.number("<u4"))
@@ -102,6 +102,8 @@ class Decoder:
                 come[field] = body.planes(count, 2)
             if parts & 4:
                 come["heading"] = body.planes(count, 1)
+            if parts & 8:
+                come["species"] = body.planes(count, 1)
             for field in ("dx", "dy") if name in MOVE else ():
                 come[field] = body.column(count)
         count = len(stayed["x"])

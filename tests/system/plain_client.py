@@ -227,8 +227,8 @@ def columns(snapshot):
     for kind, sizes in KINDS:
         of_kind = getattr(snapshot.plain, kind)
         fields = {field.name: numpy.array(getattr(of_kind, field.name), numpy.uint32 if field.name == "id" else float)
-                  # no subscription asks for headings
-                  for field in of_kind.DESCRIPTOR.fields if field.name != "heading"}
+                  # no subscription asks for these
+                  for field in of_kind.DESCRIPTOR.fields if field.name not in ("heading", "species")}
         assert {len(column) for column in fields.values()} == {getattr(snapshot, COUNTS[kind])}
         result[kind] = {name.removesuffix("_px"): column for name, column in fields.items()}
     return result

@@ -46,7 +46,7 @@ FULL, DOTS, DENSITY = stream_pb2.DETAIL_FULL, stream_pb2.DETAIL_DOTS, stream_pb2
 class Recorder(plain.Client):
     """A client that creates one world, steps it, and keeps the frames of each subscription in order."""
 
-    def __init__(self, server, seed, headings=False, **parameters):
+    def __init__(self, server, seed, headings=False, species=False, **parameters):
         self.bodies = collections.defaultdict(list)  # by subscription
         self.newest = {}  # by (subscription, island): the last snapshot, and how many there have been
         self.cases = {}  # by name: the subscription
@@ -56,7 +56,7 @@ class Recorder(plain.Client):
         super().__init__(server, key="vectors")
         self.islands = parameters.get("island_count", 1)
         self.call(create_world=c.CreateWorld(name=WORLD, seed=seed, parameters=plain.assignments(**parameters)))
-        self.plain = self.subscribe(None, codec=PLAIN, headings=headings)
+        self.plain = self.subscribe(None, codec=PLAIN, headings=headings, species=species)
 
     def frame(self):
         channel, body = super().frame()
@@ -118,6 +118,8 @@ class Recorder(plain.Client):
             steps = [math.floor(value * 16 + 0.5) for value in (info.x_px, info.y_px, info.radius_px, info.health)]
             if snapshot.plain.organisms.heading:
                 steps.append(heading_in_steps(info.heading))
+            if snapshot.plain.organisms.species:
+                steps.append(info.species)
             shown = info.alive and info.radius_px > 0  # otherwise it has no body
             if shown != (organism in organisms) or shown and steps != organisms[organism]:
                 raise AssertionError(f"organism {organism}: {steps}, {info}; in columns {organisms.get(organism)}")
@@ -318,7 +320,21 @@ def headings(server):
         return recorder
 
 
-SCENARIOS = [life, births, empty, islands, wide, crowd, tiles, details, coarse, corner, damage, headings]
+def species(server):
+    """Prey and predators, which eat them; children of both are born, and an interval ends."""
+    with Recorder(server, 43, species=True, **{**TILED, "population_size": 14, "food_count": 60}, predator_count=5,
+                  reproduction="births", births="asexual", predator_births="asexual", birth_health=90.0,
+                  predator_birth_health=90.0, generation_s=1.5) as recorder:
+        recorder.cases["species_plain"] = recorder.plain
+        recorder.subscribe("species_deltas", codec=DELTA, species=True)
+        recorder.subscribe("species_tiles", codec=DELTA, species=True, view=c.View())
+        recorder.run_to(1, 2)
+        recorder.speed(20.0)
+        recorder.run_to(30, 60, 89, 90, 91, 120)
+        return recorder
+
+
+SCENARIOS = [life, births, empty, islands, wide, crowd, tiles, details, coarse, corner, damage, headings, species]
 
 
 # ---- what frames decode to
@@ -333,6 +349,8 @@ def entities_of(snapshot):
                 for kind, columns in plain.columns(snapshot).items()}
     if snapshot.plain.organisms.heading:
         entities["organisms"]["heading"] = [heading_in_steps(heading) for heading in snapshot.plain.organisms.heading]
+    if snapshot.plain.organisms.species:
+        entities["organisms"]["species"] = list(snapshot.plain.organisms.species)
     return entities
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+import operator
 from typing import Any, Callable, Iterable, Sequence
 
 import numpy
@@ -13,7 +14,7 @@ from evod.conversion import result
 from evod.errors import FailedPrecondition
 from evod.genes import ACCOUNT_PARTS, GENE_NAMES, Genes
 from evod.objectives import Front
-from evod.results import GenerationStatistics, GeneStatistics
+from evod.results import ColonyStatistics, GenerationStatistics, GeneStatistics
 from evod.tables import fitness_text, html_table, pandas
 from evod.v1 import commands_pb2, world_pb2
 
@@ -187,7 +188,29 @@ def generations_of(rows: Iterable[world_pb2.GenerationStatistics], gene_names: S
     return [Generation(number, tuple(islands)) for number, islands in by_number.items()]
 
 
-_ISLAND_COLUMNS = tuple(field.name for field in dataclasses.fields(GenerationStatistics) if field.name != "genes")
+_ISLAND_COLUMNS = tuple(field.name for field in dataclasses.fields(GenerationStatistics)
+                        if field.name not in ("genes", "colony", "predators"))
+_COLONY_COLUMNS = tuple(field.name for field in dataclasses.fields(ColonyStatistics))
+_MOMENT_COLUMNS = ("generation", "island", "end_tick", "simulated_s")  # those that both species share
+
+
+def _columns_of(rows: Sequence[GenerationStatistics | None], gene_names: Sequence[str]) -> dict[str, Any]:
+    """Returns the statistics of one species as arrays. Numbers that are not there are nan."""
+
+    def column(of: Callable[[Any], Any]) -> Any:
+        return numpy.array([numpy.nan if row is None else of(row) for row in rows])
+
+    columns = {name: column(operator.attrgetter(name)) for name in _ISLAND_COLUMNS}
+    for gene in gene_names:
+        for what in ("mean", "deviation", "min", "max"):
+            columns[f"{gene}_{what}"] = column(lambda row: float(getattr(row.genes[gene], what)))
+    for gene in gene_names:
+        for part in ACCOUNT_PARTS:
+            columns[f"{gene}_{part}"] = column(lambda row: account_part(row.genes[gene], part))
+    if any(row is not None and row.colony is not None for row in rows):
+        for name in _COLONY_COLUMNS:
+            columns[name] = column(lambda row: numpy.nan if row.colony is None else getattr(row.colony, name))
+    return columns
 
 
 class History(list[Generation]):
@@ -264,13 +287,11 @@ class History(list[Generation]):
     def columns(self) -> dict[str, numpy.typing.NDArray[Any]]:
         """Returns the columns of `to_pandas` as arrays, without pandas."""
         rows = [island for g in self[:] for island in g.islands]
-        columns = {name: numpy.array([getattr(row, name) for row in rows]) for name in _ISLAND_COLUMNS}
-        for gene in self.gene_names:
-            for what in ("mean", "deviation", "min", "max"):
-                columns[f"{gene}_{what}"] = numpy.array([getattr(row.genes[gene], what) for row in rows], float)
-        for gene in self.gene_names:
-            for part in ACCOUNT_PARTS:
-                columns[f"{gene}_{part}"] = numpy.array([account_part(row.genes[gene], part) for row in rows], float)
+        columns = _columns_of(rows, self.gene_names)
+        if any(row.predators for row in rows):
+            predators = _columns_of([row.predators for row in rows], self.gene_names)
+            columns |= {f"predators_{name}": column for name, column in predators.items()
+                        if name not in _MOMENT_COLUMNS}
         if self and self[0].evaluation_count is not None:
             columns["evaluations"] = numpy.array([g.evaluation_count for g in self[:] for _ in g.islands])
         return columns
@@ -278,7 +299,8 @@ class History(list[Generation]):
     def to_pandas(self) -> Any:
         """Returns a DataFrame with one row per generation and island.
 
-        It has the columns of ``world.table("generations")`` and of `RunFile.generations`.
+        It has the columns of ``world.table("generations")`` and of `RunFile.generations`. In a world with predators,
+        their columns have the prefix ``predators_``; the others are about the prey.
         """
         return pandas().DataFrame(self.columns())
 

@@ -294,6 +294,7 @@ class LabPlans:
             compression=stream_pb2.COMPRESSION_ZSTD if snapshot_decoder.can_unpack else stream_pb2.COMPRESSION_NONE,
             unacknowledged_max=UNACKNOWLEDGED_MAX,
             headings=True,
+            species=True,
             view=view,
         )
         return (yield from self._subscribe(c.Request(subscribe_snapshots=snapshots)))

@@ -33,6 +33,9 @@ _MOVE = frozenset(("organisms", "crates"))
 _COUNTS = ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")
 _LENGTH_PX_MAX = 1e7  # largest accepted width or height of an island; the limits of evod's parameters are lower
 _DENSITY_CELLS = (1, 2, 4, 8, 16)
+_SPECIES_MAX = 255  # a byte in CODEC_DELTA
+#: Columns that organisms may have: what they contain, and the bit in the parts of a section.
+_OPTIONAL = {"heading": ("headings", 4), "species": ("species", 8)}
 can_unpack = zstandard is not None  #: whether this client can decode compressed snapshots
 
 
@@ -264,6 +267,8 @@ def _plain(message: stream_pb2.SnapshotFrame) -> Content:
                 kind[field] = numpy.rint(column * STEPS_PER_PX).astype(_kind_of(field))
         if name == "organisms" and len(columns.heading):
             kind["heading"] = _plain_headings(columns.heading, count)
+        if name == "organisms" and len(columns.species):
+            kind["species"] = _plain_species(columns.species, count)
         content[name] = kind
     return content
 
@@ -276,6 +281,15 @@ def _plain_headings(radians: Sequence[float], count: int) -> Array:
         raise DamagedData("a snapshot's plain.organisms has a heading that is not -pi to pi")
     steps: Array = numpy.rint(headings * (HEADING_STEPS / (2 * numpy.pi))).astype(numpy.int32) % HEADING_STEPS
     return steps
+
+
+def _plain_species(numbers: Sequence[int], count: int) -> Array:
+    species = numpy.array(numbers, numpy.uint32)
+    if len(species) != count:
+        raise DamagedData(f"a snapshot's plain.organisms has {len(species)} of species, not {count} as its count says")
+    if numpy.any(species > _SPECIES_MAX):
+        raise DamagedData(f"a snapshot's plain.organisms has a species that is not 0 to {_SPECIES_MAX}")
+    return species.astype(numpy.int32)
 
 
 def _position_kind(position_bytes: int) -> str:
@@ -328,14 +342,16 @@ class _Deltas:
         base   the entities of this kind in the base; empty for a keyframe.
         count  the number of entities of this kind in the snapshot, as its message states it.
         """
-        parts, parts_max = body.number("<u1"), 7 if name == "organisms" else 3  # only organisms have headings
+        parts, parts_max = body.number("<u1"), 15 if name == "organisms" else 3  # only organisms have optional columns
         if parts > parts_max:
             raise DamagedData(f"a snapshot's parts of {name} are {parts}, allowed: 0 to {parts_max}")
         has_ids, moves = name in self._have_ids, name in _MOVE
-        base_count, has_headings = len(base.get("x", ())), parts & 4 != 0 and count > 0
-        if base_count and count and has_headings != ("heading" in base):
-            raise DamagedData("only one of a snapshot and its base has headings")
-        fields = ("id",) * has_ids + ("x", "y", *sizes) + ("heading",) * has_headings + ("dx", "dy") * moves
+        base_count = len(base.get("x", ()))
+        optional = tuple(field for field, (_, bit) in _OPTIONAL.items() if parts & bit and count > 0)
+        for field, (content, _) in _OPTIONAL.items():
+            if base_count and count and (field in optional) != (field in base):
+                raise DamagedData(f"only one of a snapshot and its base has {content}")
+        fields = ("id",) * has_ids + ("x", "y", *sizes, *optional) + ("dx", "dy") * moves
         stayed = {field: base[field] if base_count else numpy.zeros(0, _kind_of(field)) for field in fields}
         if parts & 1:
             gone_count = body.number("<u4")
@@ -354,8 +370,7 @@ class _Deltas:
                 come["id"] = body.rising_column(come_count)
             come |= {field: body.planes(come_count, position_bytes) for field in ("x", "y")}
             come |= {field: body.planes(come_count, 2).astype(numpy.int32) for field in sizes}
-            if has_headings:
-                come["heading"] = body.planes(come_count, 1).astype(numpy.int32)
+            come |= {field: body.planes(come_count, 1).astype(numpy.int32) for field in optional}
             if moves:
                 come |= {field: body.column(come_count) for field in ("dx", "dy")}
         stayed_count = len(stayed["x"])
@@ -377,7 +392,7 @@ class _Deltas:
             stayed["health"] = stayed["health"] + body.column(stayed_count)
             if int(stayed["health"].view(numpy.uint32).max()) > 0xFFFF:
                 raise DamagedData("a snapshot has a health outside its range")
-        if stayed_count and has_headings:
+        if stayed_count and "heading" in optional:
             stayed["heading"] = (stayed["heading"] + body.column(stayed_count)) % HEADING_STEPS
         columns = _merged(stayed, come, has_ids) if come else stayed
         if has_ids and columns["id"].flags.writeable:
@@ -437,13 +452,13 @@ def _merged_tiles(contents: Sequence[Content]) -> Content:
     """Returns the entities of several tiles, in ascending order of ids."""
     together: dict[str, Columns] = {}
     for name, sizes in _SIZES.items():
-        # Tiles without organisms have no headings.
-        with_headings = {"heading" in content[name] for content in contents if name == "organisms"
-                         and len(content[name]["x"])}
-        if len(with_headings) == 2:
-            raise DamagedData("only some tiles of a snapshot have headings")
-        parts = [content for content in contents if not with_headings or len(content[name]["x"])]
-        fields = ("id", "x", "y", *sizes) + ("heading",) * any(with_headings)
+        # Tiles without organisms have no headings and no species.
+        parts = [content for content in contents if len(content[name]["x"])]
+        optional = [field for field in _OPTIONAL if any(field in content[name] for content in parts)]
+        for field in optional:
+            if not all(field in content[name] for content in parts):
+                raise DamagedData(f"only some tiles of a snapshot have {_OPTIONAL[field][0]}")
+        fields = ("id", "x", "y", *sizes, *optional)
         columns = {
             field: numpy.concatenate([content[name][field] for content in parts])
             if parts

@@ -166,8 +166,9 @@ class Organisms(_Entities[Organism]):
 
     def _table(self) -> dict[str, Any]:
         genes = {} if self._genes is None else self._genes.to_texts()
-        headings = {"heading": self.headings} if "heading" in self._columns else {}
-        return super()._table() | headings | {"velocity_x_px_s": self.velocities[:, 0],
+        optional = {"heading": self.headings} if "heading" in self._columns else {}
+        optional |= {"species": self.species} if "species" in self._columns else {}
+        return super()._table() | optional | {"velocity_x_px_s": self.velocities[:, 0],
                                               "velocity_y_px_s": self.velocities[:, 1]} | genes
 
     @property
@@ -205,6 +206,14 @@ class Organisms(_Entities[Organism]):
             return numpy.full(len(self), numpy.nan)
         headings: Array = self._columns["heading"].astype(numpy.int8) * (2 * numpy.pi / HEADING_STEPS)
         return headings
+
+    @functools.cached_property
+    def species(self) -> Array:
+        """The species of each organism, a number of ``Species``: 0 for prey, 1 for predators.
+
+        All are 0 in a world without predators.
+        """
+        return self._columns.get("species", numpy.zeros(len(self), numpy.int32))
 
     @functools.cached_property
     def radius_px(self) -> Array:

@@ -40,6 +40,7 @@ namespace palette {
 constexpr Colour background{204, 204, 204};
 constexpr Colour wall{0, 0, 0};
 constexpr Colour organism{104, 22, 148};
+constexpr Colour predator{140, 64, 0};
 constexpr Colour organism_pointed_at{190, 60, 250};
 constexpr Colour food{62, 176, 76};
 constexpr Colour poison{196, 22, 36};
@@ -97,12 +98,13 @@ constexpr std::array<Colour, 7> kinds{{
 
 /// The colours of an island in one look.
 struct IslandColours {
-    Colour outside;              // around the walls
-    Colour ground, wall;         // inside the walls, and the walls
-    Colour label;                // numbers on the ground
-    Colour body_low, body_high;  // an organism with no health, and one with the greatest health
-    Colour body;                 // an organism whose health is unknown
-    Colour arc;                  // the health arc; classic: the circle of an organism
+    Colour outside;             // around the walls
+    Colour ground, wall;        // inside the walls, and the walls
+    Colour label;               // numbers on the ground
+    Colour body_low, body_high; // an organism with no health, and one with the greatest health
+    Colour body;                // an organism whose health is unknown
+    Colour arc;                 // the health arc; classic: the circle of an organism
+    Colour predator_low, predator_high, predator_edge;
     Colour pointed_at, selected; // rings around organisms
     Colour food, poison, crate, crate_edge, obstacle;
     Colour food_radius, poison_radius, trail, death;

@@ -255,11 +255,10 @@ void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Came
     if (styles.organism.form == Form::Body) {
         set_health(organisms, full_health_, reused_.discs);
     }
-    if (island_view.options.colour_by == ColourBy::Nothing) {
-        layers_.organisms.set(reused_.discs);
-        return painter_.draw(layers_.organisms, styles.organism);
-    }
     reused_.colours.clear();
+    if (island_view.options.colour_by == ColourBy::Nothing) {
+        return draw_species(organisms, styles.organism, styles.predator);
+    }
     const Population* population = island_view.population();
     if (island_view.options.colour_by == ColourBy::Health) {
         add_health_colours(organisms, ColourScale{island_view.options.ramp, 0, full_health_}, reused_.colours);
@@ -269,12 +268,36 @@ void IslandRenderer::draw_organisms(const codec::Entities& organisms, const Came
     } else {
         reused_.colours.assign(reused_.discs.size(), palette::unknown);
     }
-    layers_.organisms.set(reused_.discs, reused_.colours);
     ShapeStyle style = styles.coloured;
     if (camera.zoom() < outline_zoom_min) {
         style.edge_pixels = 0;
     }
-    painter_.draw(layers_.organisms, style);
+    draw_species(organisms, style, styles.predator);
+}
+
+/// Draws the prey as discs and the predators as triangles, with the colours in `reused_` if there are any.
+void IslandRenderer::draw_species(const codec::Entities& organisms, const ShapeStyle& prey,
+                                  const ShapeStyle& predator) {
+    if (!organisms.has_species()) {
+        layers_.organisms.set(reused_.discs, reused_.colours);
+        return painter_.draw(layers_.organisms, prey);
+    }
+    const auto draw = [&](bool predators, Layer& layer, const ShapeStyle& style) {
+        reused_.shapes.clear();
+        reused_.species_colours.clear();
+        for (std::size_t i = 0; i < reused_.discs.size(); ++i) {
+            if ((organisms.species_of(i) == evod::v1::SPECIES_PREDATOR) == predators) {
+                reused_.shapes.push_back(reused_.discs[i]);
+                if (!reused_.colours.empty()) {
+                    reused_.species_colours.push_back(reused_.colours[i]);
+                }
+            }
+        }
+        layer.set(reused_.shapes, reused_.species_colours);
+        painter_.draw(layer, style);
+    };
+    draw(false, layers_.organisms, prey);
+    draw(true, layers_.predators, predator);
 }
 
 /// Draws the headings of organisms that are large enough for them to be seen.

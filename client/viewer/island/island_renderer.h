@@ -74,6 +74,7 @@ class IslandRenderer {
     void draw_walls(const codec::ReceivedSnapshot& snapshot, const Camera& camera, Look look);
     void draw_items(const codec::ReceivedSnapshot& snapshot, const Camera& camera, const Styles& styles);
     void draw_organisms(const codec::Entities& organisms, const Camera& camera, const IslandView& island_view);
+    void draw_species(const codec::Entities& organisms, const ShapeStyle& prey, const ShapeStyle& predator);
     void draw_headings(const Positions& organisms, const Camera& camera, const Styles& styles);
     void draw_density(const codec::ReceivedSnapshot& snapshot, const Positions& at, const Camera& camera,
                       const IslandView& island_view);
@@ -89,7 +90,7 @@ class IslandRenderer {
     void set_boxes(Layer& layer, const Positions& boxes);
 
     struct Layers {
-        Layer shadow, food, poison, obstacles, crates, organisms, headings, pointed_at, selected;
+        Layer shadow, food, poison, obstacles, crates, organisms, predators, headings, pointed_at, selected;
         Layer few_food, few_poison; // shares of the items, for dots
         // Tiles streamed as dots contain only positions.
         Layer organism_dots, crate_dots, obstacle_dots;
@@ -100,7 +101,7 @@ class IslandRenderer {
         std::vector<Shape> discs; // the organisms in this frame
         std::vector<Shape> shapes, food_shapes;
         std::vector<Line> lines;
-        std::vector<Colour> colours;
+        std::vector<Colour> colours, species_colours; // of all organisms, and of one species
         ColouredLines arrow_lines, target_lines;
         std::vector<std::size_t> labelled; // indices of the organisms with a number
         std::vector<std::size_t> named;    // indices of those whose label contains the id, too

@@ -38,6 +38,9 @@ Legend legend_of(const IslandView& island_view, const codec::ReceivedSnapshot& s
         }
         break;
     }
+    if (snapshot.entities->organisms.has_species()) {
+        legend.entries.push_back({{}, "predator", &Styles::predator});
+    }
     const bool needs_population = island_view.options.colour_by == ColourBy::Gene ||
                                   island_view.options.radii == Which::All || island_view.options.forces != Which::None;
     if (needs_population && population == nullptr && !island_view.problem().empty()) {

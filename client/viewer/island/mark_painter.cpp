@@ -45,13 +45,13 @@ struct MarkPainter::State {
         if (!drawing) {
             drawing = std::make_unique<Drawing>();
         }
-        const bool is_body = mark.style.form == Form::Body,
-                   has_tips = mark.style.form == Form::Leaf || mark.style.form == Form::Star;
+        const bool is_body = mark.style.form == Form::Body, is_triangle = mark.style.form == Form::Triangle,
+                   has_tips = is_triangle || mark.style.form == Form::Leaf || mark.style.form == Form::Star;
         const float radius = is_body ? 0.65f * mark.radius : has_tips ? 0.6f * mark.radius : mark.radius;
         if (mark.style.form == Form::Line || mark.style.form == Form::Arrow) {
             drawing->layer.set(std::array{Line{middle - radius, middle, middle + radius, middle}});
         } else {
-            const float half_height = is_body ? body_health : radius;
+            const float half_height = is_body || is_triangle ? body_health : radius;
             drawing->layer.set(std::array{Shape{middle, middle, radius, half_height}});
         }
         const ImVec2 window = ImGui::GetIO().DisplaySize;

@@ -35,8 +35,8 @@ Source read_source(int index) {
 )";
 
 std::string with_form(const std::string& source, Form form, bool point) {
-    constexpr std::array<const char*, form_count> names{"CIRCLE", "RECTANGLE", "LINE",   "ARROW",    "BODY",
-                                                        "LEAF",   "STAR",      "RIPPLE", "SOFT_LINE"};
+    constexpr std::array<const char*, form_count> names{"CIRCLE", "RECTANGLE", "LINE",   "ARROW",     "BODY",
+                                                        "LEAF",   "STAR",      "RIPPLE", "SOFT_LINE", "TRIANGLE"};
     std::string text = "#version 330 core\n";
     for (std::size_t i = 0; i < names.size(); ++i) {
         text += "#define " + std::string{names[i]} + " " + std::to_string(i) + "\n";

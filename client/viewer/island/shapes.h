@@ -17,8 +17,8 @@
 
 namespace evod::viewer {
 
-/// A circle, rectangle, leaf or star: its centre and half size, in px of the world. The half width of a circle, leaf or
-/// star is its radius. The half height of a body is not a length but its health, from 0 to 1.
+/// A circle, rectangle, leaf or star: its centre and half size, in px of the world. The half width of a circle, leaf,
+/// star or triangle is its radius. The half height of a body or triangle is not a length but its health, from 0 to 1.
 struct Shape {
     float x = 0, y = 0, half_width = 0, half_height = 0;
 };
@@ -33,19 +33,20 @@ enum class Form {
     Rectangle,
     Line,
     Arrow,
-    Body,    // a disc with an arc around it that shows the health, clockwise from the top
-    Leaf,    // around the disc of its radius, pointed at the upper right and the lower left, with a vein if it is large
-    Star,    // four spikes twice as long as its radius, like the letter X
-    Ripple,  // a disc that is transparent at its centre
-    SoftLine // fades out at both sides
+    Body,   // a disc with an arc around it that shows the health, clockwise from the top
+    Leaf,   // around the disc of its radius, pointed at the upper right and the lower left, with a vein if it is large
+    Star,   // four spikes twice as long as its radius, like the letter X
+    Ripple, // a disc that is transparent at its centre
+    SoftLine, // fades out at both sides
+    Triangle  // upright, of about the area of the disc of its radius; its fill shows the health
 };
-constexpr std::size_t form_count = 9;
+constexpr std::size_t form_count = 10;
 
 /// All sizes in pixels are those at scale 1; they are multiplied by the scale of the camera.
 struct ShapeStyle {
     Form form = Form::Circle;
     Colour fill{}, edge{};     // `fill` is used by layers that have no colours per shape
-    Colour fill_low{};         // of a body without health; its colour changes to `fill` with its health
+    Colour fill_low{};         // of a body or triangle without health; its colour changes to `fill` with its health
     float edge_pixels = 0;     // width of the edge, drawn inside the outline; 0: none. Of a body: of the arc, at most
     float half_pixels_min = 0; // a smaller shape is drawn with this half size, so that it stays visible
     float line_pixels = 1.5f;  // thickness of lines and arrows

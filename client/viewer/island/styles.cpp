@@ -34,6 +34,12 @@ Styles vivid(const palette::IslandColours& of, std::uint8_t shadow) {
                        .edge_pixels = 3,
                        .half_pixels_min = 1.5f};
     styles.coloured = styles.organism;
+    styles.predator = {.form = Form::Triangle,
+                       .fill = of.predator_high,
+                       .edge = of.predator_edge,
+                       .fill_low = of.predator_low,
+                       .edge_pixels = 1,
+                       .half_pixels_min = 1.5f};
     styles.organism_dot = {.fill = of.body, .half_pixels_min = 1.1f};
     styles.pointed_at = {.fill = transparent, .edge = of.pointed_at, .edge_pixels = 2, .half_pixels_min = 5};
     styles.food = {.form = Form::Leaf, .fill = of.food, .half_pixels_min = 0.75f};
@@ -50,6 +56,12 @@ Styles classic(const palette::IslandColours& of) {
     Styles styles = common(of);
     styles.organism = {.fill = transparent, .edge = of.body, .edge_pixels = 2, .half_pixels_min = 1.5f};
     styles.coloured = {.edge = palette::organism_outline, .edge_pixels = 1, .half_pixels_min = 1.5f};
+    styles.predator = {.form = Form::Triangle,
+                       .fill = transparent,
+                       .edge = of.predator_edge,
+                       .fill_low = transparent,
+                       .edge_pixels = 2,
+                       .half_pixels_min = 1.5f};
     styles.organism_dot = styles.organism;
     styles.pointed_at = {.fill = {255, 255, 255, 90}, .edge = of.pointed_at, .edge_pixels = 3, .half_pixels_min = 4};
     styles.food = {.fill = of.food, .half_pixels_min = 1};

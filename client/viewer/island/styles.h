@@ -12,6 +12,7 @@ namespace evod::viewer {
 struct Styles {
     ShapeStyle organism;             // without a colouring
     ShapeStyle coloured;             // with a colour of its own
+    ShapeStyle predator;             // with and without a colouring
     ShapeStyle organism_dot;         // streamed without radius and health
     ShapeStyle food_dot, poison_dot; // among organisms that are too small to see one by one
     ShapeStyle pointed_at, selected;

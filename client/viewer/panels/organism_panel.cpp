@@ -52,8 +52,14 @@ std::string shown_fate(const SelectedOrganism& organism) {
         if (info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_REMOVED) {
             return print("removed by a user after %.1f s", info.lived_s());
         }
+        if (info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_EATEN) {
+            return print("eaten by a predator after %.1f s", info.lived_s());
+        }
         return print("died of %s after %.1f s",
-                     info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison" : "hunger", info.lived_s());
+                     info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison"
+                     : info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_OLD    ? "old age"
+                                                                                : "hunger",
+                     info.lived_s());
     }
     return organism.ended() ? print("alive when last seen after %.1f s; its generation has ended", info.lived_s())
                             : print("alive for %.1f s, health %.1f", info.lived_s(), info.health());
@@ -65,9 +71,9 @@ std::string shown_choice(const evod::v1::OrganismInfo& info) {
     case evod::v1::CHOICE_WANDER:
         return "about to wander";
     case evod::v1::CHOICE_SEEK:
-        return "about to seek food" + place;
+        return (info.species() == evod::v1::SPECIES_PREDATOR ? "about to hunt prey" : "about to seek food") + place;
     case evod::v1::CHOICE_FLEE:
-        return "about to flee from poison" + place;
+        return print("about to flee from (%.0f, %.0f)", info.target_x_px(), info.target_y_px());
     case evod::v1::CHOICE_STEER:
         return "steered by its network";
     default:
@@ -130,7 +136,14 @@ void OrganismPanel::build_life(Context& context, const SelectedOrganism& organis
             context.island_data.toggle_following(context.world.feed);
         }
     }
-    ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
+    if (info.species() == evod::v1::SPECIES_PREDATOR) {
+        ImGui::Text("a predator; eaten: %u prey", info.food_eaten());
+    } else {
+        ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
+    }
+    if (info.has_number()) {
+        ImGui::Text("number %u, age %.1f s, children: %u", info.number(), info.age_s(), info.children());
+    }
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
 }
 

@@ -116,11 +116,25 @@ std::vector<std::string> statistics_texts(const evod::v1::SnapshotFrame& snapsho
         "poison eaten " + with_separators(live.poison_eaten()),
         "tick " + with_separators(snapshot.tick()) + " (" + core::duration(snapshot.simulated_s()) + ")",
     };
+    const bool has_predators = live.predator_count() + live.eaten_count() > 0 ||
+                               (last_generation != nullptr && last_generation->has_predators());
+    if (live.born_count() > 0) {
+        pieces.insert(pieces.begin() + 1, "born " + with_separators(live.born_count()));
+    }
+    if (has_predators) {
+        pieces.insert(pieces.begin() + 1, "predators " + with_separators(live.predator_count()) + ", prey eaten " +
+                                              with_separators(live.eaten_count()));
+    }
     if (last_generation != nullptr) {
         pieces.push_back(print("fitness of generation %llu: best %s, mean %s",
                                static_cast<unsigned long long>(last_generation->generation()),
                                shown_fitness(last_generation->fitness_best()).c_str(),
                                shown_fitness(last_generation->fitness_mean()).c_str()));
+        if (last_generation->has_predators()) {
+            pieces.push_back(print("of its predators: best %s, mean %s",
+                                   shown_fitness(last_generation->predators().fitness_best()).c_str(),
+                                   shown_fitness(last_generation->predators().fitness_mean()).c_str()));
+        }
     }
     return pieces;
 }

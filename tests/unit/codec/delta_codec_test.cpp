@@ -68,10 +68,12 @@ Sender::Sent two_snapshots(std::uint64_t seed, SnapshotDecoder& decoder) {
     return sender.send(island, 2);
 }
 
-RC_GTEST_PROP(DeltaCodec, EverySnapshotIsRestoredExactly, (std::uint64_t seed, bool wide, bool headings)) {
+RC_GTEST_PROP(DeltaCodec, EverySnapshotIsRestoredExactly,
+              (std::uint64_t seed, bool wide, bool headings, bool species)) {
     Random random{seed};
     LivingIsland island;
     island.headings = headings;
+    island.species = species;
     island.side_px = wide ? 500'000 : 4000;
     island.populate(random);
     Sender sender;
@@ -130,6 +132,45 @@ TEST(DeltaCodec, ABodyWithoutHeadingsDoesNotMentionThem) {
     EXPECT_EQ(without[2], 2) << "the parts of the organisms: some have come";
     EXPECT_EQ(with[2], 2 + 4);
     EXPECT_EQ(with.size(), without.size() + 2);
+}
+
+/// Organisms without radius and health, with these ids and species.
+QuantisedSnapshot of_species(Column ids, Column species) {
+    QuantisedSnapshot snapshot = heading_to(std::move(ids), {});
+    snapshot.organisms.species = std::move(species);
+    return snapshot;
+}
+
+TEST(DeltaCodec, ASpeciesIsSentOnlyWhenAnOrganismComes) {
+    const auto base = std::make_shared<QuantisedSnapshot>(of_species({1, 2, 5}, {0, 1, 0}));
+    const Baseline baseline = initial_baseline(base);
+    const std::string keyframe = encode_keyframe(baseline);
+    EXPECT_EQ(keyframe[2], 2 + 8) << "the parts of the organisms: some have come, with species";
+    EXPECT_EQ(keyframe.size(),
+              encode_keyframe(initial_baseline(std::make_shared<QuantisedSnapshot>(of_species({1, 2, 5}, {})))).size() +
+                  3);
+    const std::string still = encode_delta(baseline, *base, 1);
+    EXPECT_EQ(still.size(),
+              encode_delta(initial_baseline(std::make_shared<QuantisedSnapshot>(of_species({1, 2, 5}, {}))),
+                           of_species({1, 2, 5}, {}), 1)
+                  .size());
+    for (const QuantisedSnapshot& next : {*base, of_species({1, 3, 5}, {0, 1, 0}), of_species({1, 2, 5}, {1, 1, 0})}) {
+        const auto decoded = decode_body(encode_delta(baseline, next, 1), {.counts = counts_of(next)}, &baseline);
+        ASSERT_TRUE(decoded) << decoded.error().what;
+        EXPECT_EQ(*decoded->snapshot, next);
+    }
+}
+
+TEST(DeltaCodec, SpeciesMustNotVanishOrAppear) {
+    const auto with = std::make_shared<QuantisedSnapshot>(of_species({1, 2}, {0, 1}));
+    const auto without = std::make_shared<QuantisedSnapshot>(of_species({1, 2}, {}));
+    for (const auto& [base, next] : {std::pair{with, without}, std::pair{without, with}}) {
+        EXPECT_FALSE(follows(*next, *base));
+        const Baseline right = initial_baseline(next), wrong = initial_baseline(base);
+        const auto refused = decode_body(encode_delta(right, *next, 1), {.counts = counts_of(*next)}, &wrong);
+        ASSERT_FALSE(refused);
+        EXPECT_THAT(refused.error().what, testing::HasSubstr("species, unlike its base"));
+    }
 }
 
 TEST(DeltaCodec, HeadingsMustNotVanishOrAppear) {

@@ -25,6 +25,7 @@ inline std::uint64_t below(Random& random, std::uint64_t end) {
 struct LivingIsland {
     double side_px = 4000; // of a square
     bool headings = false; // whether organisms have headings
+    bool species = false;  // whether organisms have a species
     struct Organism {
         std::uint32_t id;
         std::int64_t x, y, dx, dy;
@@ -125,6 +126,9 @@ struct LivingIsland {
             size(snapshot.organisms, organism.radius, organism.health);
             if (headings) {
                 snapshot.organisms.heading.push_back(static_cast<std::uint32_t>(organism.dx >> 6 & 0xff));
+            }
+            if (species) {
+                snapshot.organisms.species.push_back(organism.id % 2);
             }
         }
         for (const auto& [items, entities] : {std::pair{&food, &snapshot.food}, std::pair{&poison, &snapshot.poison}}) {

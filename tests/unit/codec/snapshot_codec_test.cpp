@@ -57,6 +57,20 @@ TEST(PlainCodec, DecodingRestoresTheSnapshot) {
     EXPECT_EQ(*snapshot->entities, small_snapshot());
 }
 
+TEST(PlainCodec, SpeciesAreNumbers) {
+    QuantisedSnapshot snapshot;
+    snapshot.organisms = {.id = {1, 4}, .x = {0, 0}, .y = {0, 0}, .width = {16, 16}, .height = {0, 0}};
+    EXPECT_TRUE(frame_of(snapshot).plain().organisms().species().empty());
+    snapshot.organisms.species = {0, 1};
+    evod::v1::SnapshotFrame frame = frame_of(snapshot);
+    EXPECT_THAT(frame.plain().organisms().species(), testing::ElementsAre(0, 1));
+    EXPECT_EQ(*decode_plain(frame).value().entities, snapshot);
+    frame.mutable_plain()->mutable_organisms()->set_species(1, 256);
+    EXPECT_THAT(decode_plain(frame).error().what, HasSubstr("plain.organisms.species is 256, not 0 to 255"));
+    frame.mutable_plain()->mutable_organisms()->add_species(0);
+    EXPECT_THAT(decode_plain(frame).error().what, HasSubstr("species is 3 numbers long, not 2 as the count says"));
+}
+
 TEST(PlainCodec, HeadingsAreRadians) {
     QuantisedSnapshot snapshot = small_snapshot();
     EXPECT_TRUE(frame_of(snapshot).plain().organisms().heading().empty());

@@ -81,7 +81,8 @@ QuantisedSnapshot copy_of(const QuantisedView& view) {
                         .y = {of.y.begin(), of.y.end()},
                         .width = {of.width.begin(), of.width.end()},
                         .height = {of.height.begin(), of.height.end()},
-                        .heading = {of.heading.begin(), of.heading.end()}};
+                        .heading = {of.heading.begin(), of.heading.end()},
+                        .species = {of.species.begin(), of.species.end()}};
     };
     return {.position_bytes = view.position_bytes,
             .of_tile = view.of_tile,
@@ -96,6 +97,7 @@ LivingIsland random_island(std::uint64_t seed) {
     Random random{seed};
     LivingIsland island;
     island.headings = below(random, 2) == 0;
+    island.species = below(random, 2) == 0;
     island.side_px = std::array{400.0, 1024.0, 4000.0, 60'000.0}[below(random, 4)];
     island.populate(random);
     island.live(random, 1); // some are on the walls
@@ -112,6 +114,15 @@ TEST(SnapshotTiles, HeadingsInSomeTilesOnlyAreRefused) {
     const auto refused = merged(2, std::array<const QuantisedSnapshot*, 2>{&with, &without});
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().what, HasSubstr("headings only in some tiles"));
+}
+
+TEST(SnapshotTiles, SpeciesInSomeTilesOnlyAreRefused) {
+    QuantisedSnapshot with{.of_tile = true}, without{.of_tile = true};
+    with.organisms = {.id = {1}, .x = {1}, .y = {1}, .width = {1}, .height = {1}, .species = {1}};
+    without.organisms = {.id = {2}, .x = {2}, .y = {2}, .width = {2}, .height = {2}};
+    const auto refused = merged(2, std::array<const QuantisedSnapshot*, 2>{&with, &without});
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("species only in some tiles"));
 }
 
 RC_GTEST_PROP(SnapshotTiles, AllTilesTogetherAreTheSnapshot, (std::uint64_t seed)) {

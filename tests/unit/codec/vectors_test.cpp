@@ -161,6 +161,9 @@ json::object entities_of(const QuantisedSnapshot& snapshot, bool with_ids) {
     if (snapshot.organisms.has_headings()) {
         entities["organisms"].as_object()["heading"] = numbers(snapshot.organisms.heading);
     }
+    if (snapshot.organisms.has_species()) {
+        entities["organisms"].as_object()["species"] = numbers(snapshot.organisms.species);
+    }
     add(entities, "food",
         {{"id", numbers(snapshot.food.id)}, {"x", numbers(snapshot.food.x)}, {"y", numbers(snapshot.food.y)}});
     add(entities, "poison",
@@ -376,7 +379,7 @@ evod::v1::SnapshotFrame mutated(evod::v1::SnapshotFrame frame, const Mutation& m
 }
 
 /// Returns the CRC-32 of all numbers as u32: for each kind its count, then the columns id (not of boxes), x, y, radius
-/// or half width, health or half height, and heading, as the kind has them; then the cells of each density.
+/// or half width, health or half height, heading and species, as the kind has them; then the cells of each density.
 std::string checksum_of_content(const ReceivedSnapshot& snapshot) {
     std::string bytes;
     const auto append = [&bytes](const auto& column) {
@@ -392,7 +395,8 @@ std::string checksum_of_content(const ReceivedSnapshot& snapshot) {
         if (part != &QuantisedSnapshot::crates && part != &QuantisedSnapshot::obstacles) {
             append(entities.id);
         }
-        for (const Column* column : {&entities.x, &entities.y, &entities.width, &entities.height, &entities.heading}) {
+        for (const Column* column :
+             {&entities.x, &entities.y, &entities.width, &entities.height, &entities.heading, &entities.species}) {
             append(*column);
         }
     }

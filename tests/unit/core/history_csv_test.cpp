@@ -54,6 +54,37 @@ TEST(HistoryCsv, HasTheNamesOfTheServersExport) {
               "impulse_change\n");
 }
 
+TEST(HistoryCsv, OnlyColoniesHaveColumnsOfTheirOwn) {
+    google::protobuf::RepeatedPtrField<v1::GenerationStatistics> all;
+    *all.Add() = statistics_of(1, 0);
+    EXPECT_EQ(history_heading(genes, colony_columns_of(all)), history_heading(genes));
+    *all.Add() = statistics_of(1, 0);
+    all[1].mutable_colony()->set_born_count(7);
+    EXPECT_THAT(history_heading(genes, colony_columns_of(all)),
+                testing::EndsWith("_change,first_count,lowest_count,count_mean,born_count,refused_count,"
+                                  "without_room_count,eaten_count,old_count,died_count,children_mean,"
+                                  "children_variance,age_mean_s\n"));
+    v1::GenerationStatistics& both = *all.Add();
+    both = statistics_of(2, 0);
+    both.mutable_colony()->set_born_count(7);
+    *both.mutable_predators() = statistics_of(2, 0);
+    both.mutable_predators()->mutable_colony()->set_born_count(3);
+    const ColonyColumns with = colony_columns_of(all);
+    const std::vector<std::string> columns = history_columns(genes, with);
+    EXPECT_EQ(columns[48], "predators_organism_count");
+    EXPECT_EQ(columns.back(), "predators_age_mean_s");
+    const auto number = [&](const v1::GenerationStatistics& of, const std::string& name) {
+        const auto numbers = history_numbers(of, with);
+        EXPECT_EQ(numbers.size(), columns.size());
+        return numbers[static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin())];
+    };
+    EXPECT_EQ(number(both, "born_count"), 7);
+    EXPECT_EQ(number(both, "predators_born_count"), 3);
+    EXPECT_EQ(number(both, "predators_fitness_best"), 1.0 / 3);
+    EXPECT_TRUE(std::isnan(number(all[0], "born_count")));
+    EXPECT_TRUE(std::isnan(number(all[1], "predators_born_count")));
+}
+
 TEST(HistoryCsv, ReadsBackEveryDigit) {
     const auto read = read_history_csv(csv({statistics_of(2, 0), statistics_of(2, 1)}));
     ASSERT_TRUE(read);

@@ -46,8 +46,20 @@ TEST(WorldMessage, GenerationStatisticsAreConvertedInOrder) {
     s.diversity = number(), s.alive_count = count(), s.starved_count = count(), s.poisoned_count = count();
     s.food_eaten = count(), s.poison_eaten = count(), s.clamp_count = count(), s.too_fast_count = count();
     s.speed_limit_count = count(), s.best_organism = count(), s.simulated_s = number();
+    s.colony = simulation::ColonyStatistics{.first_count = count(),
+                                            .lowest_count = count(),
+                                            .count_mean = number(),
+                                            .born_count = count(),
+                                            .refused_count = count(),
+                                            .without_room_count = count(),
+                                            .eaten_count = count(),
+                                            .old_count = count(),
+                                            .died_count = count(),
+                                            .children_mean = number(),
+                                            .children_variance = number(),
+                                            .age_mean_s = number()};
     const auto message = to_proto(s);
-    EXPECT_THAT(unset_in(message), testing::IsEmpty());
+    EXPECT_THAT(unset_in(message), testing::ElementsAre("predators"));
     // The fields are in the order of the message, so the numbers must rise.
     std::vector<double> numbers, expected;
     collect_numbers(message, numbers);
@@ -55,8 +67,12 @@ TEST(WorldMessage, GenerationStatisticsAreConvertedInOrder) {
         expected.push_back(n);
     }
     EXPECT_EQ(numbers, expected);
+    simulation::GenerationStatistics both = s;
+    both.predators = {s};
+    EXPECT_EQ(to_proto(both).predators().SerializeAsString(), message.SerializeAsString());
     s.account.reset();
-    EXPECT_THAT(unset_in(to_proto(s)), testing::ElementsAre("genes.account"));
+    s.colony.reset();
+    EXPECT_THAT(unset_in(to_proto(s)), testing::ElementsAre("colony", "genes.account", "predators"));
 }
 
 TEST(WorldMessage, LiveStatisticsAreConvertedCompletely) {
@@ -66,10 +82,14 @@ TEST(WorldMessage, LiveStatisticsAreConvertedCompletely) {
                                        .food_eaten = 5,
                                        .poison_eaten = 6,
                                        .starved_count = 7,
-                                       .poisoned_count = 8};
+                                       .poisoned_count = 8,
+                                       .eaten_count = 9,
+                                       .old_count = 10,
+                                       .born_count = 11,
+                                       .predator_count = 12};
     std::vector<double> numbers;
     collect_numbers(to_proto(s, 1), numbers);
-    EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+    EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
 }
 
 TEST_F(Lived, AnOrganismIsConvertedCompletely) {
@@ -87,7 +107,38 @@ TEST_F(Lived, AnOrganismIsConvertedCompletely) {
     // not every organism eats or dies in a quarter of a second
     never.erase("poison_eaten"), never.erase("cause_of_death");
     never.erase("placed_tick"); // no command has placed an organism
+    for (const char* const of_colonies : {"species", "number", "age_s", "children", "handling_s"}) {
+        never.erase(of_colonies);
+    }
     EXPECT_THAT(never, testing::UnorderedElementsAre("brain", "heading")) << "of organisms with a network";
+}
+
+TEST(OrganismMessage, OrganismsOfColoniesHaveSpeciesAndNumbers) {
+    parameters::Parameters parameters;
+    parameters.reproduction = parameters::Reproduction::Births;
+    parameters.births = parameters.predator_births = parameters::Births::Asexual;
+    parameters.birth_health = 60;
+    parameters.birth_cost = 0;
+    parameters.food_count = 500;
+    parameters.predator_count = 4;
+    simulation::World world{parameters, base::Seed{4}};
+    base::InlineExecutor executor;
+    for (int tick = 0; tick < 300; ++tick) {
+        world.advance_tick(executor);
+    }
+    const simulation::Island& island = world.islands()[0];
+    EXPECT_EQ(organism_info(world, island, 49).species(), v1::SPECIES_UNSPECIFIED);
+    const v1::OrganismInfo predator = organism_info(world, island, 50);
+    EXPECT_EQ(predator.species(), v1::SPECIES_PREDATOR);
+    EXPECT_EQ(predator.number(), 50);
+    ASSERT_GT(island.born().genes.cols(), 54);
+    const v1::OrganismInfo child = organism_info(world, island, 54);
+    ASSERT_EQ(child.parents_size(), 1);
+    EXPECT_EQ(organism_info(world, island, child.parents(0)).species(), child.species());
+    EXPECT_GT(organism_info(world, island, child.parents(0)).children(), 0);
+    EXPECT_TRUE(child.has_placed_tick());
+    EXPECT_EQ(child.number(), 54);
+    EXPECT_LT(child.age_s(), predator.age_s());
 }
 
 TEST(OrganismMessage, ContainsTheActivationsOfItsNetwork) {

@@ -58,10 +58,23 @@ TEST(Quantise, HeadingsAreKeptOnlyIfWanted) {
     constexpr std::int32_t away = physics::void_position;
     runtime::IslandSnapshot island;
     island.organisms = lying(5, {{4, step, step, 1, 1}, {3, away, away, 0, -1}, {0, step, step, 1, 1}});
-    EXPECT_THAT(quantise(island, true).organisms.heading, IsEmpty()) << "of a world without headings";
+    constexpr OptionalColumns with{.headings = true};
+    EXPECT_THAT(quantise(island, with).organisms.heading, IsEmpty()) << "of a world without headings";
     island.organisms.heading.assign({1.5707964F, 9.F, -0.1F});
-    EXPECT_THAT(quantise(island, false).organisms.heading, IsEmpty());
-    EXPECT_THAT(quantise(island, true).organisms.heading, ElementsAre(252, 64));
+    EXPECT_THAT(quantise(island).organisms.heading, IsEmpty());
+    EXPECT_THAT(quantise(island, with).organisms.heading, ElementsAre(252, 64));
+}
+
+TEST(Quantise, SpeciesOfTheLivingAreKeptOnlyIfWanted) {
+    constexpr std::int32_t away = physics::void_position;
+    constexpr OptionalColumns with{.species = true};
+    constexpr auto prey = simulation::Species::Prey, predator = simulation::Species::Predator;
+    runtime::IslandSnapshot island;
+    island.organisms = lying(4, {{3, step, step, 1, 1}, {1, away, away, 0, -1}, {0, step, step, 1, 1}});
+    EXPECT_THAT(quantise(island, with).organisms.species, IsEmpty()) << "of a world without predators";
+    island.organisms.species = {prey, prey, prey, predator};
+    EXPECT_THAT(quantise(island).organisms.species, IsEmpty());
+    EXPECT_THAT(quantise(island, with).organisms.species, ElementsAre(0, 1));
 }
 
 TEST(Quantise, AbsentItemsAreOmitted) {

@@ -28,13 +28,13 @@ class SnapshotStreamsTest : public testing::Test {
   protected:
     /// A session with one subscription, of id 1.
     Session& subscribed(const std::string& world, v1::Codec codec = v1::CODEC_UNSPECIFIED, double rate_hz = 60,
-                        bool headings = false) {
+                        OptionalColumns with = {}) {
         Session& session = *sessions.emplace_back(std::make_unique<Session>(clock, dropped));
         session.number = sessions.size();
         SnapshotSubscription subscription;
         subscription.world = world;
         subscription.rate_hz = rate_hz;
-        subscription.headings = headings;
+        subscription.with = with;
         if (codec != v1::CODEC_UNSPECIFIED) {
             subscription.codec = codec;
         }
@@ -92,8 +92,9 @@ TEST_F(SnapshotStreamsTest, OneTurnDistributesAFewIslands) {
     EXPECT_EQ(ticks(viewer), std::vector<std::uint64_t>(4, 7));
 }
 
-TEST_F(SnapshotStreamsTest, OnlyViewersThatWantHeadingsGetThem) {
-    Session &with = subscribed("w", v1::CODEC_PLAIN, 60, true), &without = subscribed("w");
+TEST_F(SnapshotStreamsTest, OptionalColumnsAreSentToThoseWhoWantThem) {
+    Session &without = subscribed("w"), &with_headings = subscribed("w", v1::CODEC_PLAIN, 60, {.headings = true}),
+            &with_both = subscribed("w", v1::CODEC_PLAIN, 60, {.headings = true, .species = true});
     auto snapshot = std::make_shared<runtime::Snapshot>();
     snapshot->world = "w";
     snapshot->island_count = 1;
@@ -105,19 +106,21 @@ TEST_F(SnapshotStreamsTest, OnlyViewersThatWantHeadingsGetThem) {
     for (auto* column : {&organisms.radius_px, &organisms.health, &organisms.heading}) {
         column->assign(1, 0.F);
     }
+    organisms.species = {simulation::Species::Predator};
     organisms.alive_count = 1;
     std::vector<runtime::Outbox::NewestSnapshot> taken;
     taken.push_back({.snapshot = std::move(snapshot), .after_change = true});
     streams.deliver(std::move(taken));
     distribute_all();
-    const auto heading_count = [](Session& session) {
+    const auto counts = [](Session& session) {
         v1::SnapshotFrame frame;
         EXPECT_TRUE(frame.ParseFromString(*session.queue.next()->parts.front()->get()));
         EXPECT_EQ(frame.plain().organisms().id_size(), 1);
-        return frame.plain().organisms().heading_size();
+        return std::pair{frame.plain().organisms().heading_size(), frame.plain().organisms().species_size()};
     };
-    EXPECT_EQ(heading_count(with), 1);
-    EXPECT_EQ(heading_count(without), 0);
+    EXPECT_EQ(counts(with_both), (std::pair{1, 1}));
+    EXPECT_EQ(counts(with_headings), (std::pair{1, 0}));
+    EXPECT_EQ(counts(without), (std::pair{0, 0}));
 }
 
 TEST_F(SnapshotStreamsTest, RequestedKeyframesComeOncePerPeriod) {

@@ -18,11 +18,13 @@ TEST(Subscription, WithoutFieldsIsPlainAndOfAllIslands) {
     EXPECT_FALSE(subscription.bandwidth);
 }
 
-TEST(Subscription, GetsHeadingsOnlyOnRequest) {
+TEST(Subscription, GetsHeadingsAndSpeciesOnlyOnRequest) {
     v1::SubscribeSnapshots request;
-    EXPECT_FALSE(to_subscription(request, "w", 1, 60).headings);
+    EXPECT_EQ(to_subscription(request, "w", 1, 60).with, OptionalColumns{});
     request.set_headings(true);
-    EXPECT_TRUE(to_subscription(request, "w", 1, 60).headings);
+    EXPECT_EQ(to_subscription(request, "w", 1, 60).with, OptionalColumns{.headings = true});
+    request.set_species(true);
+    EXPECT_EQ(to_subscription(request, "w", 1, 60).with, (OptionalColumns{.headings = true, .species = true}));
 }
 
 TEST(Subscription, OfOneIslandCountsOne) {

@@ -57,7 +57,7 @@ function checksum_of_content(snapshot) {
   for (const kind of kinds) {
     const of = snapshot[kind];
     append([of.x.length]);
-    for (const name of ["id", "x", "y", "radius", "health", "half_width", "half_height", "heading"]) {
+    for (const name of ["id", "x", "y", "radius", "health", "half_width", "half_height", "heading", "species"]) {
       if (of[name]) {
         append(of[name]);
       }

@@ -151,7 +151,7 @@ function snapshot(changes = {}, organisms = [[0, 16, 32]], coarse = []) {
     info: { world: "a", run_id: "r", island: 0, generation: 1, tick: 0, simulated_s: 0, state: "RUN_STATE_RUNNING", width_px: 2000, height_px: 1000,
             item_radius_px: 5, tile_px: 0, counts: { organisms: organisms.length }, ...changes },
     organisms: { id: column(0, Uint32Array), x: column(1, Int32Array), y: column(2, Int32Array), radius: Int32Array.from(organisms, (row) => row[3] ?? 160),
-                 health: Int32Array.from(organisms, (row) => row[4] ?? 1600), heading: null },
+                 health: Int32Array.from(organisms, (row) => row[4] ?? 1600), heading: null, species: null },
     food: none, poison: none, crates: boxes, obstacles: boxes, coarse, ...(changes.items ?? {}),
   };
 }

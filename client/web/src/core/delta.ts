@@ -10,7 +10,7 @@
 import {BodyReader} from "./body";
 import {DamagedData} from "./errors";
 
-const some_are_gone = 1, some_have_come = 2, have_headings = 4; // flags in the parts of a section
+const some_are_gone = 1, some_have_come = 2, have_headings = 4, have_species = 8; // flags in the parts of a section
 
 /** The entities of one kind. Absent columns are null. */
 export interface Section {
@@ -21,6 +21,7 @@ export interface Section {
   width: Int32Array|null; // radius, or half width
   height: Int32Array|null; // health, or half height
   heading: Uint8Array|null;
+  species: Uint8Array|null;
   dx: Int32Array|null; // movement since the previous snapshot; 0 for new entities
   dy: Int32Array|null;
 }
@@ -61,6 +62,7 @@ function empty_section(kind: Kind, has_ids: boolean): Section {
     width: sizes,
     height: sizes,
     heading: null,
+    species: null,
     dx: numbers,
     dy: numbers
   };
@@ -89,13 +91,16 @@ export function decode_body(
 function read_section(
   kind: Kind, has_ids: boolean, reader: BodyReader, base: Section, count: number, position_bytes: number, ticks: number,
   base_ticks: number): Section {
-  const parts = reader.u8(), parts_max = kind.has_health ? 7 : 3; // only organisms have headings
+  const parts = reader.u8(), parts_max = kind.has_health ? 15 : 3; // only organisms have headings and species
   if (parts > parts_max) {
     throw new DamagedData(`a snapshot's body has parts ${parts}, not 0 to ${parts_max}`);
   }
   const headings = (parts & have_headings) !== 0;
   if (base.count > 0 && count > 0 && headings !== (base.heading !== null)) {
     throw new DamagedData("only one of a snapshot and its base has headings");
+  }
+  if (base.count > 0 && count > 0 && ((parts & have_species) !== 0) !== (base.species !== null)) {
+    throw new DamagedData("only one of a snapshot and its base has species");
   }
   let section = base;
   if (parts & some_are_gone) {
@@ -105,7 +110,7 @@ function read_section(
     }
     section = without(base, reader.rising_column(gone_count, base.count));
   }
-  const come = parts & some_have_come ? read_come(kind, has_ids, headings, reader, count, position_bytes) : null;
+  const come = parts & some_have_come ? read_come(kind, has_ids, parts, reader, count, position_bytes) : null;
   const stayed = section.count, whole = stayed + (come === null ? 0 : come.count);
   if (whole !== count) {
     throw new DamagedData(`a snapshot has ${whole} ${kind.name}, not ${count} as its count says`);
@@ -127,7 +132,7 @@ function read_section(
 }
 
 function read_come(
-  kind: Kind, has_ids: boolean, headings: boolean, reader: BodyReader, count_max: number,
+  kind: Kind, has_ids: boolean, parts: number, reader: BodyReader, count_max: number,
   position_bytes: number): Section {
   const count = reader.u32();
   // Each entity needs at least the bytes of its position, so the remaining bytes limit the memory that is allocated.
@@ -142,14 +147,15 @@ function read_come(
   const id = has_ids ? reader.rising_column(count, 2 ** 32) : null;
   const x = planes(position_bytes), y = planes(position_bytes);
   const width = kind.has_sizes ? planes(2) : null, height = kind.has_sizes ? planes(2) : null;
-  let heading: Uint8Array|null = null;
-  if (headings) {
-    heading = new Uint8Array(count);
-    reader.planes(count, 1, heading);
-  }
+  const bytes = (): Uint8Array => {
+    const numbers = new Uint8Array(count);
+    reader.planes(count, 1, numbers);
+    return numbers;
+  };
+  const heading = parts & have_headings ? bytes() : null, species = parts & have_species ? bytes() : null;
   const dx = kind.moves ? reader.column(count).slice(0, count) : null;
   const dy = kind.moves ? reader.column(count).slice(0, count) : null;
-  return {count, id, x, y, width, height, heading, dx, dy};
+  return {count, id, x, y, width, height, heading, species, dx, dy};
 }
 
 /** Returns the new positions, and replaces the displacements unless ticks is 0.
@@ -214,7 +220,7 @@ function turned(differences: Int32Array, headings: Uint8Array, count: number): U
  *  the same bits. */
 function with_columns(
   section: Section, count: number, numbers: (column: Int32Array, name: keyof Section) => Int32Array,
-  bytes: (column: Uint8Array) => Uint8Array): Section {
+  bytes: (column: Uint8Array, name: "heading"|"species") => Uint8Array): Section {
   const of = (name: "width"|"height"|"dx"|"dy") => {
     const column = section[name];
     return column === null ? null : numbers(column, name);
@@ -226,7 +232,8 @@ function with_columns(
     y: numbers(section.y, "y"),
     width: of("width"),
     height: of("height"),
-    heading: section.heading === null ? null : bytes(section.heading),
+    heading: section.heading === null ? null : bytes(section.heading, "heading"),
+    species: section.species === null ? null : bytes(section.species, "species"),
     dx: of("dx"),
     dy: of("dy")
   };
@@ -246,7 +253,7 @@ function without(section: Section, gone: Uint32Array): Section {
   const kept = with_columns(
     section, count, (column) => numbers_without(column, gone, count), (column) => bytes_without(column, gone, count));
   if (count === 0) {
-    kept.heading = null; // the next organisms may have headings or not
+    kept.heading = kept.species = null; // the next organisms may have headings and species or not
   }
   return kept;
 }
@@ -281,7 +288,7 @@ function merged(stayed: Section, come: Section): Section {
   const added = (name: keyof Section) => name === "id" ? as_int32(come.id!) : come[name] as Int32Array;
   return with_columns(
     stayed, stayed.count + come.count, (column, name) => merged_numbers(column, added(name), places),
-    (column) => merged_bytes(column, come.heading!, places));
+    (column, name) => merged_bytes(column, come[name]!, places));
 }
 
 /** Returns for each entity of `come` the index in `stayed` before which it is inserted. */

@@ -454,9 +454,11 @@ export interface ColonyStatistics {
   old_count?: number;
   /** deaths, of whatever cause */
   died_count?: number;
-  /** Of the organisms that died: children in the whole life, and age at death. */
+  /** of the organisms that died: children in the whole life */
   children_mean?: number;
+  /** of these children */
   children_variance?: number;
+  /** of the organisms that died: age at death */
   age_mean_s?: number;
 }
 
@@ -514,14 +516,15 @@ export interface OrganismInfo {
   /** Position of the food or poison that the organism seeks or flees; its own position otherwise. */
   target_x_px?: number;
   target_y_px?: number;
-  /** The organism was placed after this tick, counted from the start of its generation. Absent: it was bred. */
+  /** The organism was placed, or with births was born, after this tick, counted from the start of its generation.
+   *  Absent: it was bred. */
   placed_tick?: number;
   /** Radians from +x toward +y, -pi to pi. Absent if the organism is dead or has no heading. */
   heading?: number;
   /** The neural network that steers the organism. Absent if the organism is dead, its generation has ended, or the
    *  controller of the world is not `network`. */
   brain?: Brain;
-  /** Only in colonies: */
+  /** only in colonies */
   species?: Species;
   /** with births: one number in its whole life; ids change at every interval */
   number?: number;
@@ -1840,7 +1843,8 @@ export interface Population {
   /** f32: one column per entry of WorldInfo.gene_names */
   genes?: Uint8Array;
   /** Two columns of u32: ids of the first and second parent in the previous generation; empty in the first generation.
-   *  2^32 - 1 for a placed organism. */
+   *  2^32 - 1 for a placed organism. With births never empty, as OrganismInfo.parents; 2^32 - 1 for an organism without
+   *  parents. */
   parents?: Uint8Array;
   /** u32: the ancestor in the first generation. It is found by following first parents, also across islands. Ancestors
    *  are numbered from 0, island after island. 2^32 - 1 if following first parents leads to a placed organism. Empty if

@@ -14,6 +14,7 @@ export interface Organisms {
   radius: Int32Array;
   health: Int32Array;
   heading: Uint8Array|null; // null: the organisms have no headings
+  species: Uint8Array|null; // 0: prey, 1: predators; null: the world has no predators
 }
 
 export interface Items {

@@ -236,7 +236,8 @@ function snapshot_of(info: SnapshotInfo, sections: Section[], coarse: CoarseTile
       y: organisms.y,
       radius: organisms.width!,
       health: organisms.height!,
-      heading: organisms.heading
+      heading: organisms.heading,
+      species: organisms.species
     },
     food: items(food),
     poison: items(poison),

@@ -118,17 +118,16 @@ function merged(kind: Kind, parts: Section[], order: Uint32Array): Section {
   if (parts.length === 1) {
     return parts[0];
   }
-  const with_headings = parts.filter((part) => part.heading !== null).length;
-  if (with_headings !== 0 && with_headings !== parts.length) {
-    throw new DamagedData("only some tiles of a snapshot have headings");
-  }
   const numbers = (column: (part: Section) => Int32Array) =>
     in_order(joined(new Int32Array(order.length), parts.map(column)), order);
-  let heading: Uint8Array|null = null;
-  if (with_headings > 0) {
-    const all = joined(new Uint8Array(order.length), parts.map((part) => part.heading!));
-    heading = Uint8Array.from(order, (i) => all[i]);
-  }
+  const bytes = (name: "heading"|"species", names: string) => {
+    const having = parts.filter((part) => part[name] !== null);
+    if (having.length !== 0 && having.length !== parts.length) {
+      throw new DamagedData(`only some tiles of a snapshot have ${names}`);
+    }
+    const all = joined(new Uint8Array(order.length), having.map((part) => part[name]!));
+    return having.length === 0 ? null : Uint8Array.from(order, (i) => all[i]);
+  };
   return {
     count: order.length,
     id: as_uint32(numbers((part) => as_int32(part.id!))),
@@ -136,7 +135,8 @@ function merged(kind: Kind, parts: Section[], order: Uint32Array): Section {
     y: numbers((part) => part.y),
     width: kind.has_sizes ? numbers((part) => part.width!) : null,
     height: kind.has_sizes ? numbers((part) => part.height!) : null,
-    heading,
+    heading: bytes("heading", "headings"),
+    species: bytes("species", "species"),
     dx: null,
     dy: null
   };

@@ -56,5 +56,15 @@ TEST(Legend, NamesGenesWithTheirUnits) {
     EXPECT_EQ(gene_title("hidden3<food_bearing"), "hidden3<food_bearing") << "weights have no unit";
 }
 
+TEST(Legend, ExplainsPredatorsWhereThereAreAny) {
+    codec::ReceivedSnapshot snapshot = snapshot_with_health(80);
+    codec::QuantisedSnapshot entities = *snapshot.entities;
+    entities.organisms.species = {1};
+    snapshot.entities = std::make_shared<codec::QuantisedSnapshot>(entities);
+    const Legend legend = legend_of(IslandView{}, snapshot, std::nullopt, 1);
+    ASSERT_EQ(legend.entries.size(), 1u);
+    EXPECT_EQ(legend.entries[0].text, "predator");
+}
+
 } // namespace
 } // namespace evod::viewer

@@ -114,6 +114,16 @@ TEST(StatusText, ListsTheStatisticsOfBothGenerations) {
                 ElementsAre("alive 43 of 50", "mean health 78.2", "food eaten 1,312", "poison eaten 45",
                             "tick 36,034 (10:01 min)", "fitness of generation 15: best 251.3, mean 160.2"));
     EXPECT_EQ(statistics_texts(snapshot, nullptr).size(), 5u);
+    snapshot.mutable_live()->set_predator_count(9);
+    snapshot.mutable_live()->set_eaten_count(31);
+    snapshot.mutable_live()->set_born_count(1200);
+    last.mutable_predators()->set_fitness_best(12);
+    last.mutable_predators()->set_fitness_mean(3.5);
+    EXPECT_THAT(statistics_texts(snapshot, &last),
+                ElementsAre("alive 43 of 50", "predators 9, prey eaten 31", "born 1,200", "mean health 78.2",
+                            "food eaten 1,312", "poison eaten 45", "tick 36,034 (10:01 min)",
+                            "fitness of generation 15: best 251.3, mean 160.2",
+                            "of its predators: best 12.0, mean 3.5"));
 }
 
 TEST(StatusText, LabelsReplaysOfLiveWorldsAndOfRunFiles) {
