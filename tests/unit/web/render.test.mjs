@@ -151,7 +151,7 @@ function snapshot(changes = {}, organisms = [[0, 16, 32]], coarse = []) {
     info: { world: "a", run_id: "r", island: 0, generation: 1, tick: 0, simulated_s: 0, state: "RUN_STATE_RUNNING", width_px: 2000, height_px: 1000,
             item_radius_px: 5, tile_px: 0, counts: { organisms: organisms.length }, ...changes },
     organisms: { id: column(0, Uint32Array), x: column(1, Int32Array), y: column(2, Int32Array), radius: Int32Array.from(organisms, (row) => row[3] ?? 160),
-                 health: Int32Array.from(organisms, (row) => row[4] ?? 1600), heading: null, species: null },
+                 health: Int32Array.from(organisms, (row) => row[4] ?? 1600), heading: null, species: changes.species ?? null },
     food: none, poison: none, crates: boxes, obstacles: boxes, coarse, ...(changes.items ?? {}),
   };
 }
@@ -216,6 +216,14 @@ test("a decoder may reuse the columns of a snapshot", () => {
 function pick(x, y, circles, pixel = 1) {
   return render.circle_at(x, y, circles.length, (i) => circles[i][0], (i) => circles[i][1], (i) => circles[i][2], pixel, 12);
 }
+
+test("predators are known as long as snapshots say so", () => {
+  const at = new render.Interpolator();
+  at.add(snapshot({ species: Uint8Array.of(0, 1) }, [[1, 0, 0], [2, 100, 0]]), 0);
+  assert.deepEqual([at.latest.is_predator(0), at.latest.is_predator(1)], [false, true]);
+  at.add(snapshot({ tick: 1 }, [[1, 0, 0], [2, 100, 0]]), 50);
+  assert.deepEqual([at.latest.is_predator(1), at.previous.is_predator(1)], [false, true]);
+});
 
 test("small organisms have a target of 12 pixels", () => {
   assert.equal(pick(12, 0, [[0, 0, 2]]), 0);

@@ -61,6 +61,7 @@ export interface Drawing {
   lineages: {founder: number; count: number; colour: string}[]|null; // the largest lineages, largest first
   lineage_others: {lineages: number; count: number; placed: number}|null; // smaller lineages; placed by a user
   headings: boolean;
+  predators: boolean; // the snapshot says which organisms are predators
   pointed_at: {organism: number|null; food: number | null; poison: number | null}|
     null; // food and poison: only for tools other than select
 }

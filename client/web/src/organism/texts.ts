@@ -21,6 +21,10 @@ export function fate_text(history: OrganismHistory): string {
       return texts.removed(lived_s);
     case "CAUSE_OF_DEATH_POISONED":
       return texts.poisoned(lived_s);
+    case "CAUSE_OF_DEATH_EATEN":
+      return texts.eaten_by_predator(lived_s);
+    case "CAUSE_OF_DEATH_OLD":
+      return texts.old(lived_s);
     case "CAUSE_OF_DEATH_STARVED":
     case "CAUSE_OF_DEATH_UNSPECIFIED":
     case undefined:

@@ -8,7 +8,7 @@ import type {GeneAccount, GenerationStatistics, GeneStatistics} from "../core/pr
 export type Island = number|null; // null: all islands together
 
 /** The numbers of GenerationStatistics. */
-export type NumberColumn = Exclude<keyof GenerationStatistics, "genes">;
+export type NumberColumn = Exclude<keyof GenerationStatistics, "genes"|"colony"|"predators">;
 export type GenePart = Exclude<keyof GeneStatistics, "account">;
 export type AccountPart = keyof GeneAccount;
 /** A column of a table: "fitness_best", "gene:0:mean". */

@@ -18,6 +18,7 @@ export class Description {
       density.cell_px,
       health_max,
       at.latest.has_headings,
+      at.latest.has_species,
       look.colour_by,
       colouring.legend_key,
       by_lineage === null,
@@ -36,6 +37,7 @@ export class Description {
       health_max,
       gene_range: colouring.gene_range,
       headings: at.latest.has_headings,
+      predators: at.latest.has_species,
       pointed_at: pointed_at && {organism: pointed_at.organism, food: pointed_at.food, poison: pointed_at.poison},
       ...colouring.lineages(by_lineage),
     };

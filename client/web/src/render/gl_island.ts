@@ -64,7 +64,7 @@ export class GlIsland implements Painter {
   readonly #shapes: GlShapes;
   readonly #text: GlText;
   readonly #tables: {
-    [name in "organisms" | "food" | "poison" | "crates" | "obstacles" | "organism_dots" | "crate_dots" |
+    [name in "organisms" | "predators" | "food" | "poison" | "crates" | "obstacles" | "organism_dots" | "crate_dots" |
      "obstacle_dots"]: Filled
   };
   readonly #overlays: GlOverlays;
@@ -80,6 +80,7 @@ export class GlIsland implements Painter {
     const table = (channels: 2|4) => new Filled(shapes.gl, channels);
     this.#tables = {
       organisms: table(4),
+      predators: table(4),
       food: table(2),
       poison: table(2),
       crates: table(4),
@@ -269,16 +270,24 @@ export class GlIsland implements Painter {
   }
 
   #fill_organisms(scene: Scene): void {
-    if (!this.#tables.organisms.is_stale(`${scene.snapshot_version} ${scene.colours_version}`)) {
-      return;
+    if (this.#tables.organisms.is_stale(`${scene.snapshot_version} ${scene.colours_version}`)) {
+      this.#radius_max = 0;
+      this.#fill_species(scene, this.#tables.organisms, false);
+      this.#fill_species(scene, this.#tables.predators, true);
     }
+  }
+
+  #fill_species(scene: Scene, filled: Filled, predators: boolean): void {
     const {latest, previous, match} = scene.at;
     const {organism_colours} = scene;
     const {count, x, y, radius, health, heading, has_headings} = latest;
     const staging = (this.#staging = with_room(this.#staging, 8 * count));
     const turns = previous !== null && previous.has_headings;
-    this.#radius_max = 0;
-    for (let i = 0, at = 0; i < count; ++i, at += 8) {
+    let at = 0;
+    for (let i = 0; i < count; ++i) {
+      if (latest.is_predator(i) !== predators) {
+        continue;
+      }
       const j = previous === null ? -1 : match[i]!;
       const ahead = has_headings ? heading[i]! : 0;
       staging[at] = x[i]!;
@@ -290,15 +299,16 @@ export class GlIsland implements Painter {
       staging[at + 6] = ahead | ((turns && j >= 0 ? previous!.heading[j]! : ahead) << 8);
       staging[at + 7] = organism_colours === null ? 0 : organism_colours[i]!;
       this.#radius_max = radius[i]! > this.#radius_max ? radius[i]! : this.#radius_max;
+      at += 8;
     }
-    this.#tables.organisms.fill(staging, count, 2 * count);
+    filled.fill(staging, at / 8, at / 4);
   }
 
   #draw_organisms(scene: Scene, projection: Projection): void {
     const {styles, camera, blend} = scene, {ratio} = scene.place;
     const coloured = scene.organism_colours !== null;
-    const {table, count} = this.#tables.organisms, {has_headings} = scene.at.latest;
-    this.#shapes.draw(table, count, coloured ? styles.coloured : styles.organism, projection, {
+    const {has_headings, count} = scene.at.latest;
+    const draw = (filled: Filled, style: ShapeStyle) => this.#shapes.draw(filled.table, filled.count, style, projection, {
       moving: true,
       blend,
       coloured,
@@ -308,14 +318,18 @@ export class GlIsland implements Painter {
       half_max: this.#radius_max * projection.zoom,
       as_points: this.#is_island_in_sight(scene),
     });
+    draw(this.#tables.organisms, coloured ? styles.coloured : styles.organism);
+    draw(this.#tables.predators, styles.predator);
     const radius_pixels = Math.max(typical_radius_px * camera.zoom, seen_pixels_min(camera));
     if (has_headings && camera.zoom >= heading_zoom_min) { // lines of small organisms are shorter and thinner
-      this.#shapes.draw(table, count, styles.heading, projection, {
-        moving: true,
-        blend,
-        heading_beyond: Math.min(styles.heading_pixels, 1.5 * radius_pixels - 1) * ratio,
-        line_pixels: Math.min(styles.heading.line_pixels, radius_pixels / 4),
-      });
+      for (const {table, count} of [this.#tables.organisms, this.#tables.predators]) {
+        this.#shapes.draw(table, count, styles.heading, projection, {
+          moving: true,
+          blend,
+          heading_beyond: Math.min(styles.heading_pixels, 1.5 * radius_pixels - 1) * ratio,
+          line_pixels: Math.min(styles.heading.line_pixels, radius_pixels / 4),
+        });
+      }
     }
   }
 

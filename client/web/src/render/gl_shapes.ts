@@ -271,7 +271,7 @@ export class GlShapes {
     const edge_pixels = (options.edge_pixels ?? style.edge_pixels) * ratio;
     const half_pixels_min = (options.half_pixels_min ?? style.half_pixels_min) * ratio;
     const half_max = Math.max(options.half_max ?? Infinity, half_pixels_min);
-    const has_tips = style.form === "leaf" || style.form === "star";
+    const has_tips = style.form === "leaf" || style.form === "star" || style.form === "triangle";
     const bare =
       style.form === "body" && (edge_pixels === 0 || half_max < 0.8 * edge_pixels); // as in the vertex shader
     const rim = style.form === "body" && !bare ? Math.min(edge_pixels, 0.4 * half_max) : 0;

@@ -12,6 +12,8 @@ export const blended_s_max = 2;
 /** The interpolation takes as long as the interval between the arrivals of the two snapshots, but at most this long. */
 export const glide_ms_max = 250;
 
+const predator = 1; // SPECIES_PREDATOR of world.proto
+
 type Column = Int32Array|Uint32Array|Uint8Array;
 
 /** Returns the column, or a larger one without its contents if it is too small. */
@@ -96,6 +98,8 @@ export class KeptSnapshot {
   health = new Int32Array(0);
   heading = new Uint8Array(0);
   has_headings = false;
+  species = new Uint8Array(0);
+  has_species = false;
   readonly food = new Points();
   readonly poison = new Points();
   readonly crates = new KeptBoxes();
@@ -120,6 +124,11 @@ export class KeptSnapshot {
       this.heading = with_room(this.heading, count);
       this.heading.set(organisms.heading);
     }
+    this.has_species = organisms.species !== null;
+    if (organisms.species !== null) {
+      this.species = with_room(this.species, count);
+      this.species.set(organisms.species);
+    }
     this.food.set(snapshot.food, coarse, (dots) => dots.food);
     this.poison.set(snapshot.poison, coarse, (dots) => dots.poison);
     this.crates.set(snapshot.crates);
@@ -134,6 +143,10 @@ export class KeptSnapshot {
           {left_px, top_px, width_px, height_px, cells: density.cells, organisms: density.organisms.slice()});
       }
     }
+  }
+
+  is_predator(row: number): boolean {
+    return this.has_species && this.species[row] === predator;
   }
 
   /** Returns the row of an organism; -1 if it is not there. */

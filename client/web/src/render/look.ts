@@ -63,6 +63,9 @@ const colour_table = {
   body_high: [rgb(206, 192, 255), rgb(84, 48, 196), rgb(104, 22, 148)], // one with the greatest health
   body: [rgb(160, 138, 250), rgb(112, 84, 222), rgb(104, 22, 148)], // an organism whose health is unknown
   arc: [rgb(255, 255, 255), rgb(52, 22, 130), rgb(104, 22, 148)], // the health arc; classic: the circle of an organism
+  predator_low: [rgb(116, 74, 10), rgb(232, 196, 140), rgb(140, 64, 0)],
+  predator_high: [rgb(255, 190, 60), rgb(190, 104, 0), rgb(140, 64, 0)],
+  predator_edge: [rgb(255, 236, 200), rgb(104, 56, 0), rgb(140, 64, 0)],
   pointed_at: [rgb(255, 255, 255), rgb(52, 22, 130), rgb(190, 60, 250)], // rings around organisms
   selected: [rgb(255, 214, 90), rgb(224, 130, 0), rgb(255, 255, 255)],
   food: [rgb(150, 236, 116), rgb(92, 192, 88), rgb(62, 176, 76)],
@@ -105,14 +108,14 @@ export function colours_of(look: Look): IslandColours {
 
 // ---- styles ----------------------------------------------------------------------------------------------------
 
-export type Form = "circle"|"rectangle"|"line"|"arrow"|"body"|"leaf"|"star"|"ripple"|"soft_line";
+export type Form = "circle"|"rectangle"|"line"|"arrow"|"body"|"leaf"|"star"|"ripple"|"soft_line"|"triangle";
 
 /** All sizes are in CSS pixels. */
 export interface ShapeStyle {
   form: Form;
   fill: Colour;
   edge: Colour;
-  fill_low: Colour; // of a body without health; its colour changes to `fill` with its health
+  fill_low: Colour; // of a body or triangle without health; its colour changes to `fill` with its health
   edge_pixels: number; // width of the edge, inside the outline; 0: none. Of a body: of the arc, at most
   half_pixels_min: number; // a smaller shape is drawn with this half size, so that it stays visible
   line_pixels: number; // thickness of lines and arrows
@@ -121,6 +124,7 @@ export interface ShapeStyle {
 export interface Styles {
   organism: ShapeStyle; // without a colouring
   coloured: ShapeStyle; // with a colour of its own
+  predator: ShapeStyle; // with and without a colouring
   organism_dot: ShapeStyle; // streamed without radius and health
   food_dot: ShapeStyle; // among organisms that are too small to see one by one
   poison_dot: ShapeStyle;
@@ -166,6 +170,13 @@ function vivid(of: IslandColours, shadow: number): Styles {
     ...common(of),
     organism,
     coloured: organism,
+    predator: style("triangle", {
+      fill: of.predator_high,
+      edge: of.predator_edge,
+      fill_low: of.predator_low,
+      edge_pixels: 1.5,
+      half_pixels_min: 1.5
+    }),
     organism_dot: style("circle", {fill: of.body, half_pixels_min: 1.1}),
     pointed_at: style("circle", {fill: transparent, edge: of.pointed_at, edge_pixels: 2, half_pixels_min: 5}),
     food: style("leaf", {fill: of.food, half_pixels_min: 0.75}),
@@ -184,6 +195,9 @@ function classic(of: IslandColours): Styles {
     ...common(of),
     organism,
     coloured: style("circle", {edge: organism_outline, edge_pixels: 1, half_pixels_min: 1.5}),
+    predator: style(
+      "triangle",
+      {fill: transparent, edge: of.predator_edge, fill_low: transparent, edge_pixels: 2, half_pixels_min: 1.5}),
     organism_dot: organism,
     pointed_at: style("circle", {fill: [255, 255, 255, 90], edge: of.pointed_at, edge_pixels: 3, half_pixels_min: 4}),
     food: style("circle", {fill: of.food, half_pixels_min: 1}),

@@ -24,7 +24,7 @@ export interface Variant {
   bare: boolean;
 }
 
-const forms: readonly Form[] = ["circle", "rectangle", "line", "arrow", "body", "leaf", "star", "ripple", "soft_line"];
+const forms: readonly Form[] = ["circle", "rectangle", "line", "arrow", "body", "leaf", "star", "ripple", "soft_line", "triangle"];
 
 function header(variant: Variant): string {
   return "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp isampler2D;\n" +
@@ -81,7 +81,7 @@ Source read_source(int index) {
 #else
   source.extent = vec2(shape.zw) * zoom;
 #endif
-#if FORM == BODY
+#if FORM == BODY || FORM == TRIANGLE
   source.health = min(float(shape.w) * health_share, 1.0);
 #endif
   return source;

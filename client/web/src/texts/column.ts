@@ -34,6 +34,7 @@ export const column_texts = {
 export const legend_texts = {
   vivid: (full: number) => `organism, ring: health (full: ${full})`,
   classic: () => "organism, number: health",
+  predator: "predator",
   food: "food",
   poison: "poison",
   trail: "trail",

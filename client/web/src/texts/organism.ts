@@ -26,6 +26,8 @@ export const organism_texts = {
     `alive when last seen after ${tenths(lived_s)} s; its generation has ended`,
   starved: (lived_s: number) => `died of hunger after ${tenths(lived_s)} s`,
   poisoned: (lived_s: number) => `died of poison after ${tenths(lived_s)} s`,
+  eaten_by_predator: (lived_s: number) => `eaten by a predator after ${tenths(lived_s)} s`,
+  old: (lived_s: number) => `died of old age after ${tenths(lived_s)} s`,
   removed: (lived_s: number) => `removed by a user after ${tenths(lived_s)} s`,
   wanders: "about to wander",
   seeks: (x_px: number, y_px: number) => `about to seek food at ${place(x_px, y_px)}`,

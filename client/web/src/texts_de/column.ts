@@ -33,6 +33,7 @@ export const column_texts: typeof english.column_texts = {
 export const legend_texts: typeof english.legend_texts = {
   vivid: (full) => `Organismus, Ring: Gesundheit (voll: ${full})`,
   classic: () => "Organismus, Zahl: Gesundheit",
+  predator: "Räuber",
   food: "Futter",
   poison: "Gift",
   trail: "Spur",

@@ -28,6 +28,8 @@ export const organism_texts: typeof english.organism_texts = {
     `lebte noch, als er nach ${tenths(lived_s)} s zuletzt zu sehen war; seine Generation ist zu Ende`,
   starved: (lived_s) => `nach ${tenths(lived_s)} s verhungert`,
   poisoned: (lived_s) => `nach ${tenths(lived_s)} s an Gift gestorben`,
+  eaten_by_predator: (lived_s) => `nach ${tenths(lived_s)} s von einem Räuber gefressen`,
+  old: (lived_s) => `nach ${tenths(lived_s)} s an Altersschwäche gestorben`,
   removed: (lived_s) => `nach ${tenths(lived_s)} s von Hand entfernt`,
   wanders: "will umherstreifen",
   seeks: (x_px, y_px) => `will Futter suchen bei ${place(x_px, y_px)}`,

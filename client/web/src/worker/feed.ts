@@ -65,6 +65,7 @@ export class Feed {
         codec: "CODEC_DELTA",
         unacknowledged_max,
         headings: true,
+        species: true,
         ...(this.#has_view ? {view: {detail: "DETAIL_FULL", bytes_per_s_max, ...this.#wanted(renderer, now_ms)}} : {})
       }
     });

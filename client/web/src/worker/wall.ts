@@ -160,7 +160,7 @@ export class WorkerWall {
           rate_hz,
           codec: "CODEC_DELTA",
           unacknowledged_max,
-          ...(shown.detail === "DETAIL_FULL" ? {headings: true} : {view: {detail: shown.detail}})
+          ...(shown.detail === "DETAIL_FULL" ? {headings: true, species: true} : {view: {detail: shown.detail}})
         }
       });
       this.#connection.flush();
