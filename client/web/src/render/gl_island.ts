@@ -308,7 +308,7 @@ export class GlIsland implements Painter {
     const {styles, camera, blend} = scene, {ratio} = scene.place;
     const coloured = scene.organism_colours !== null;
     const {has_headings, count} = scene.at.latest;
-    const draw = (filled: Filled, style: ShapeStyle) => this.#shapes.draw(filled.table, filled.count, style, projection, {
+    const options = {
       moving: true,
       blend,
       coloured,
@@ -317,7 +317,9 @@ export class GlIsland implements Painter {
       half_pixels_min: has_headings || count <= few_organisms ? seen_pixels_min(camera) : undefined,
       half_max: this.#radius_max * projection.zoom,
       as_points: this.#is_island_in_sight(scene),
-    });
+    };
+    const draw = (filled: Filled, style: ShapeStyle) =>
+      this.#shapes.draw(filled.table, filled.count, style, projection, options);
     draw(this.#tables.organisms, coloured ? styles.coloured : styles.organism);
     draw(this.#tables.predators, styles.predator);
     const radius_pixels = Math.max(typical_radius_px * camera.zoom, seen_pixels_min(camera));

@@ -24,7 +24,8 @@ export interface Variant {
   bare: boolean;
 }
 
-const forms: readonly Form[] = ["circle", "rectangle", "line", "arrow", "body", "leaf", "star", "ripple", "soft_line", "triangle"];
+const forms: readonly Form[] =
+  ["circle", "rectangle", "line", "arrow", "body", "leaf", "star", "ripple", "soft_line", "triangle"];
 
 function header(variant: Variant): string {
   return "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp isampler2D;\n" +
