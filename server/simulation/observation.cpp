@@ -563,6 +563,11 @@ ObservedColumns::ObservedColumns(std::span<const std::string> gene_names) {
     for_each_number(any, add);
     for_each_gene_number(any, gene_names, add);
     evolution::for_each_number(std::nullopt, gene_names, add);
+    for_each_colony_number(ColonyStatistics{}, add);
+    const std::size_t of_prey = names_.size();
+    for (std::size_t i = 0; i < of_prey; ++i) {
+        names_.push_back("predators_" + names_[i]);
+    }
 }
 
 ObservedColumns::ObservedColumns(const parameters::Parameters& parameters)
@@ -586,12 +591,24 @@ std::optional<double> ObservedColumns::read(const GenerationStatistics& statisti
         return numbers[in_genes % numbers_per_gene];
     }
     const std::size_t in_account = in_genes - gene_count * numbers_per_gene;
-    if (!statistics.account || in_account / numbers_per_gene >= statistics.account->size()) {
-        return std::nullopt;
+    if (in_account < gene_count * numbers_per_gene) {
+        if (!statistics.account || in_account / numbers_per_gene >= statistics.account->size()) {
+            return std::nullopt;
+        }
+        const evolution::GeneAccount& gene = (*statistics.account)[in_account / numbers_per_gene];
+        const double numbers[numbers_per_gene] = {gene.selection, gene.transmission, gene.migration, gene.change};
+        return numbers[in_account % numbers_per_gene];
     }
-    const evolution::GeneAccount& gene = (*statistics.account)[in_account / numbers_per_gene];
-    const double numbers[numbers_per_gene] = {gene.selection, gene.transmission, gene.migration, gene.change};
-    return numbers[in_account % numbers_per_gene];
+    index = column - (in_account - gene_count * numbers_per_gene);
+    for_each_colony_number(statistics.colony.value_or(ColonyStatistics{}), [&](const char*, auto number) {
+        if (index++ == column && statistics.colony) {
+            found = static_cast<double>(number);
+        }
+    });
+    if (column < index) {
+        return found;
+    }
+    return statistics.predators.empty() ? std::nullopt : read(statistics.predators.front(), column - index);
 }
 
 base::Result<Observation> Observation::parse(std::string_view text, const ObservedColumns& columns,

@@ -28,7 +28,8 @@ struct ObservedRun {
     const parameters::Parameters& parameters;
 };
 
-/// The names that an expression can contain besides those of functions and parameters: the columns of the statistics.
+/// The names that an expression can contain besides those of functions and parameters: the columns of the statistics,
+/// those of colonies, and all of them once more for the predators: "predators_count_mean".
 class ObservedColumns {
   public:
     /// gene_names  the genes of the world, in chromosome order.

@@ -24,6 +24,11 @@ History squares() {
             if (generation > 1) {
                 rows[island].account = evolution::SelectionAccount(evolution::body_gene_count);
                 (*rows[island].account)[evolution::PoisonRadius].change = 0.5;
+                rows[island].colony = ColonyStatistics{.count_mean = 100, .age_mean_s = 30};
+                rows[island].predators.resize(1);
+                rows[island].predators[0].fitness_best = static_cast<double>(generation);
+                rows[island].predators[0].genes[evolution::PoisonRadius].max = 9;
+                rows[island].predators[0].colony = ColonyStatistics{.first_count = 20, .age_mean_s = 40};
             }
         }
         history.emplace_back(std::move(rows));
@@ -77,6 +82,12 @@ TEST(Observation, ComputesWhatAClosedFormGives) {
         {"generation[-1]", 12},
         {"max(fitness_mean@0 - mean(fitness_mean@0))", 144 - 650.0 / 12},
         {"body_size_max[1]", 7},
+        {"mean(count_mean)", 100}, // none in the first generation
+        {"age_mean_s@1[2]", 30},
+        {"predators_fitness_best[7]", 7},
+        {"predators_poison_radius_max[2]", 9},
+        {"predators_first_count[2]", 20},
+        {"predators_age_mean_s[-1]", 40},
         {"sum(poison_radius_change)", 5.5}, // none in the first generation
         {"sum(food_eaten, 1, 2)", 30},
         {"parameter.population_size", 50},
@@ -90,11 +101,26 @@ TEST(Observation, ComputesWhatAClosedFormGives) {
 }
 
 TEST(Observation, HasNoValueWhereDataIsMissing) {
-    for (const char* text :
-         {"fitness_mean[13]", "fitness_mean[0]", "fitness_mean[-13]", "fitness_mean[1.5]", "mean(fitness_mean, 10, 20)",
-          "first(fitness_mean > 1e9)", "1 / 0", "ln(0)", "ln(-1)", "sqrt(-1)", "exp(1000)", "1e300 * 1e300",
-          "fitness_mean@2[1]", "body_size_change[1]", "(0 - 8) ^ 0.5", "slope(fitness_mean, 3, 3)",
-          "mean(fitness_mean, 5, 4)", "1 + fitness_mean[40]"}) {
+    for (const char* text : {"fitness_mean[13]",
+                             "fitness_mean[0]",
+                             "fitness_mean[-13]",
+                             "fitness_mean[1.5]",
+                             "mean(fitness_mean, 10, 20)",
+                             "first(fitness_mean > 1e9)",
+                             "1 / 0",
+                             "ln(0)",
+                             "ln(-1)",
+                             "sqrt(-1)",
+                             "exp(1000)",
+                             "1e300 * 1e300",
+                             "fitness_mean@2[1]",
+                             "body_size_change[1]",
+                             "(0 - 8) ^ 0.5",
+                             "slope(fitness_mean, 3, 3)",
+                             "mean(fitness_mean, 5, 4)",
+                             "1 + fitness_mean[40]",
+                             "count_mean[1]",
+                             "predators_count_mean[1]"}) {
         EXPECT_EQ(value_of(text), std::nullopt) << text;
     }
     const History none;
