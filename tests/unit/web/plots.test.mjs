@@ -279,6 +279,30 @@ test("a saved history is read again", () => {
   assert.equal(run.history[0].genes[0].account, undefined);
 });
 
+const colony_row = (generation, prey, predators) => statistics(generation, 0, {
+  colony: { count_mean: prey, lowest_count: prey - 5, children_mean: 1.5 },
+  ...(predators === undefined ? {} : { predators: { fitness_best: 7, colony: { count_mean: predators } } }) });
+
+test("a saved colony is read as one run", () => {
+  const rows = [colony_row(1, 150, undefined), colony_row(2, 140, 20)];
+  const { gene_names, runs } = plots.read_history_csv(plots.history_csv(rows, []));
+  assert.deepEqual([gene_names, runs.length], [[], 1]);
+  const { colony, predators } = runs[0].history[1];
+  assert.deepEqual([colony.count_mean, colony.children_mean, predators.colony.count_mean], [140, 1.5, 20]);
+  const empty = plots.history_csv(rows, []).replace(/(0,){5}0$/m, ",,,,,");
+  assert.equal(plots.read_history_csv(empty).runs.length, 1);
+});
+
+test("the population has a line for each species", () => {
+  const population = (rows) => figure("population", subject("a", [], rows)).series;
+  const names = (rows) => population(rows).map(({ name, y }) => [name, ...y]);
+  assert.deepEqual(names([statistics(1, 0)]), []);
+  assert.deepEqual(names([colony_row(1, 150, undefined)]), [["prey, mean", 150], ["prey, fewest", 145]]);
+  assert.deepEqual(names([colony_row(1, 150, undefined), colony_row(2, 140, 20)]),
+                   [["prey, mean", 150, 140], ["prey, fewest", 145, 135], ["predators, mean", 0, 20], ["predators, fewest", 0, 0]]);
+  assert.equal(figure("fitness", subject("a", [], []), { births: true }).y_label, "children");
+});
+
 test("the runs of a sweep are distinguished", () => {
   const [heading, first, second] = plots.history_csv([statistics(1, 0), statistics(2, 0)], []).trimEnd().split("\n");
   const lines = [`cell,replicate,seed,selection,${heading}`, `0,0,7,random,${second}`, `0,0,7,random,${first}`, `1,0,7,roulette,${first}`];

@@ -2,7 +2,7 @@
 // earlier run.
 import {marks_of} from "../plots/change_marks";
 import {Comparison} from "../plots/comparison";
-import {extinctions, figure_of, quantities} from "../plots/figures";
+import {colony_quantities, extinctions, figure_of, has_predators, quantities} from "../plots/figures";
 import {show_generation} from "../plots/fitness_curve";
 import {history_csv} from "../plots/history_csv";
 import {HistoryTable} from "../plots/history_table";
@@ -17,6 +17,7 @@ import {QuantityTabs, IslandAndMeanChoice} from "./plots_choices";
 import {CompareChoice} from "./plots_compare";
 import {GeneChoice} from "./plots_genes";
 import {GeneHistogram} from "./plots_histogram";
+import {PhasePlot} from "./plots_phase";
 
 const plot_height = 270; // CSS pixels
 const image_width = 1200, image_height = 700; // of a saved image, in pixels
@@ -36,9 +37,11 @@ export class PlotsPanel implements Panel {
   readonly #tabs = new QuantityTabs(this.#content, () => this.#rebuild());
   readonly #plot =
     new Plot({height: plot_height, on_click: (generation) => void show_generation(this.#context, generation)});
+  readonly #phase = new PhasePlot();
   readonly #histogram = new GeneHistogram();
   readonly #known = h("p", {class: "hint"});
   readonly #table = new HistoryTable();
+  readonly #predators = new HistoryTable(); // the statistics of the predators
   #run = ""; // the pane, the world and the run that the plots show
   #drawn = ""; // what the plot shows
   #next_build_ms = 0;
@@ -49,7 +52,7 @@ export class PlotsPanel implements Panel {
     this.#context = context;
     this.#comparison = new Comparison(context.server, () => this.refresh());
     this.#compare = new CompareChoice(context.server, this.#comparison);
-    this.#content.append(this.#plot.element, this.#histogram.element);
+    this.#content.append(this.#plot.element, this.#phase.element, this.#histogram.element);
     const fit = () => {
       this.#plot.fit();
       this.#histogram.fit();
@@ -80,9 +83,13 @@ export class PlotsPanel implements Panel {
       this.#drawn = "";
       this.#plot.fit();
     }
-    this.#table.set_history(world.history.generations);
+    const {generations} = world.history;
+    this.#table.set_history(generations);
+    this.#predators.set_history(generations.flatMap((one) => one.predators ?? []));
+    const of_two = has_predators({table: this.#table, island: null});
     this.#compare.update(world.name);
-    this.#scope.update(this.#table.island_count);
+    this.#scope.update(this.#table.island_count, of_two);
+    this.#tabs.offer(generations.at(-1)?.colony === undefined ? [] : of_two ? colony_quantities : ["population"]);
     this.#need_population();
     const wait = this.#next_build_ms - performance.now();
     if (wait > 0) {
@@ -133,20 +140,27 @@ export class PlotsPanel implements Panel {
     this.#genes.element.hidden = !of_genes;
     const description = JSON.stringify([
       this.#table.revision, world.history.changes.length, world.history.is_complete, this.#comparison.revision,
-      quantity, island, this.#genes.described, window, world.gene_names.length
+      quantity, island, this.#genes.described, window, world.gene_names.length, this.#scope.of_predators
     ]);
     if (description !== this.#drawn) {
       this.#drawn = description;
       const {name, history: {changes}, gene_names} = world;
       const marks = [...marks_of(changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
-      const subject = {table: this.#table, island, name, gene_names, changes: marks},
+      const of_colony = colony_quantities.includes(quantity);
+      const table = this.#scope.of_predators && !of_colony ? this.#predators : this.#table;
+      const subject = {table, island, name, gene_names, changes: marks},
             other = this.#comparison.subject(island);
       const genes = of_genes ? this.#genes.update(world, quantity, subject) : [];
       const gene = of_genes ? this.#genes.gene : "";
       const empty = !world.history.is_complete                       ? texts.loading :
         quantity === "selection" && this.#table.generation_count > 0 ? texts.from_second :
                                                                        texts.none_ended;
-      const content = figure_of({quantity, subject, other, genes, gene, window});
+      const content = figure_of({quantity, subject, other, genes, gene, window, births: world.has_births});
+      this.#plot.element.hidden = quantity === "phase";
+      this.#phase.element.hidden = quantity !== "phase";
+      if (quantity === "phase") {
+        this.#phase.update(this.#table, island, window);
+      }
       this.#plot.set_content(
         {...content, note_end: plot_texts.click_shows(this.#context.world().past.range?.first_generation ?? 1), empty});
       set_text(

@@ -1,6 +1,6 @@
 // QuantityTabs and IslandAndMeanChoice: which quantity the plots show; for which island, and smoothed over how many
 // generations.
-import {quantities} from "../plots/figures";
+import {colony_quantities, quantities} from "../plots/figures";
 import type {Quantity} from "../plots/figures";
 import type {Island} from "../plots/history_table";
 import {plot_texts} from "../texts/plot";
@@ -50,6 +50,17 @@ export class QuantityTabs {
     this.#on_change();
   }
 
+  /** Offers the plots that only colonies have. */
+  offer(offered: readonly Quantity[]): void {
+    this.#tabs.forEach((tab, i) => {
+      const quantity = quantities[i]!;
+      tab.hidden = colony_quantities.includes(quantity) && !offered.includes(quantity);
+    });
+    if (this.#tabs[quantities.indexOf(this.#chosen)]!.hidden) {
+      this.choose("fitness");
+    }
+  }
+
   #show(): void {
     this.#tabs.forEach((tab, i) => {
       const chosen = quantities[i] === this.#chosen;
@@ -64,9 +75,10 @@ export class QuantityTabs {
     if (by !== 0) {
       event.preventDefault();
       event.stopPropagation();
-      const next = (quantities.indexOf(this.#chosen) + by + quantities.length) % quantities.length;
-      this.choose(quantities[next]!);
-      this.#tabs[next]!.focus();
+      const offered = quantities.filter((_, i) => !this.#tabs[i]!.hidden);
+      const next = offered[(offered.indexOf(this.#chosen) + by + offered.length) % offered.length]!;
+      this.choose(next);
+      this.#tabs[quantities.indexOf(next)]!.focus();
     }
   }
 }
@@ -74,6 +86,7 @@ export class QuantityTabs {
 export class IslandAndMeanChoice {
   readonly #smooth: HTMLSelectElement;
   readonly #island: HTMLSelectElement;
+  readonly #species: HTMLSelectElement;
   readonly element: HTMLElement;
 
   constructor(on_change: () => void) {
@@ -84,7 +97,10 @@ export class IslandAndMeanChoice {
           h("option", {value: window, selected: window === window_default},
             window === 1 ? texts.each_generation : plot_texts.mean_of(window))));
     this.#island = h("select", {class: "field", "aria-label": texts.island, hidden: true, onchange: on_change});
-    this.element = row(this.#smooth, this.#island);
+    this.#species =
+      h("select", {class: "field", "aria-label": texts.species, hidden: true, onchange: on_change},
+        h("option", {value: "prey"}, texts.prey), h("option", {value: "predators"}, texts.predators));
+    this.element = row(this.#smooth, this.#island, this.#species);
   }
 
   /** Generations of the running mean; 1: none. */
@@ -96,7 +112,13 @@ export class IslandAndMeanChoice {
     return this.#island.value === "" ? null : Number(this.#island.value);
   }
 
-  update(island_count: number): void {
+  /** Whether the plots are about the predators. */
+  get of_predators(): boolean {
+    return !this.#species.hidden && this.#species.value === "predators";
+  }
+
+  update(island_count: number, has_predators: boolean): void {
+    this.#species.hidden = !has_predators;
     this.#island.hidden = island_count < 2;
     const islands = Array.from(
       {length: this.#island.hidden ? 0 : island_count}, (_, i) => ({value: String(i), text: texts.island_name(i)}));

@@ -8,9 +8,11 @@ import type {Marks, PlotContent, Series, SeriesColour} from "./plot_content";
 import {compare_dash, histogram, range_of, running_mean} from "./plot_layout";
 import type {Mark, Numbers} from "./plot_layout";
 
-export type Quantity = "fitness"|"genes"|"selection"|"diversity"|"survivors"|"deaths"|"food";
+export type Quantity = "population"|"phase"|"fitness"|"genes"|"selection"|"diversity"|"survivors"|"deaths"|"food";
 export const quantities: readonly Quantity[] =
-  ["fitness", "genes", "selection", "diversity", "survivors", "deaths", "food"];
+  ["population", "phase", "fitness", "genes", "selection", "diversity", "survivors", "deaths", "food"];
+/** Plots that only colonies have. The phase plot is another element (panels/plots_phase.ts). */
+export const colony_quantities: readonly Quantity[] = ["population", "phase"];
 
 /** The maximum number of genes in one plot. */
 export const genes_in_plot_max = 12;
@@ -196,14 +198,23 @@ export interface FigureRequest {
   genes: readonly string[]; // whose means, or whose selection, are plotted together
   gene: string; // the one gene that is shown instead; empty: all of `genes`
   window: number; // generations of the running mean of each line and band; 1: none
+  births?: boolean; // the world has births: generations are intervals, and fitness is the number of children
 }
 
 /** Builds the plot of a quantity. */
 export function figure_of(request: FigureRequest): PlotContent {
   const make = new FigureBuilder(request.subject, request.other, request.window), {content} = make;
+  if (request.births) {
+    content.x_label = texts.interval;
+  }
   switch (request.quantity) {
+    case "population":
+      build_population(make, request.subject);
+      break;
+    case "phase":
+      break;
     case "fitness":
-      build_fitness(make, request.subject);
+      build_fitness(make, request);
       break;
     case "genes":
       build_genes(make, request);
@@ -218,12 +229,16 @@ export function figure_of(request: FigureRequest): PlotContent {
     case "survivors":
       Object.assign(content, {title: texts.survivors.title, y_label: texts.survivors.y, from_zero: true});
       make.line("alive_count", texts.survivors.alive, "green", plain, {compared: true, whole: true});
-      make.line("organism_count", texts.survivors.born, "grey", thin, {compared: false, whole: true});
+      make.line(
+        request.births ? "colony:born_count" : "organism_count", texts.survivors.born, "grey", thin,
+        {compared: false, whole: true});
       break;
     case "deaths":
       Object.assign(content, {title: texts.deaths.title, y_label: texts.deaths.y, from_zero: true});
       make.stack("starved_count", texts.deaths.starved, "orange");
       make.stack("poisoned_count", texts.deaths.poisoned, "vermilion");
+      make.stack("colony:eaten_count", texts.deaths.eaten, "purple");
+      make.stack("colony:old_count", texts.deaths.old, "grey");
       make.stack("alive_count", texts.deaths.alive, "green");
       make.compare("starved_count", texts.deaths.starved, "sky");
       make.compare("poisoned_count", texts.deaths.poisoned, "blue");
@@ -237,9 +252,25 @@ export function figure_of(request: FigureRequest): PlotContent {
   return content;
 }
 
-function build_fitness(make: FigureBuilder, subject: Subject): void {
-  const {title, y, best, mean, median, worst} = texts.fitness;
-  Object.assign(make.content, {title, y_label: y, from_zero: starts_at_zero(subject)});
+/** Whether a history is of a colony in which there was a predator. */
+export function has_predators({table, island}: Pick<Subject, "table"|"island">): boolean {
+  return table.column(island, "predators:count_mean").some((count) => count > 0);
+}
+
+function build_population(make: FigureBuilder, subject: Subject): void {
+  const {title, y, prey, prey_lowest, predators, predators_lowest} = texts.population;
+  Object.assign(make.content, {title, y_label: y, from_zero: true});
+  make.line("colony:count_mean", prey, "purple", thick, {compared: true});
+  make.line("colony:lowest_count", prey_lowest, "purple", thin, {compared: false, whole: true});
+  if (has_predators(subject)) {
+    make.line("predators:count_mean", predators, "orange", {...dashed, thickness: 2.8}, {compared: true});
+    make.line("predators:lowest_count", predators_lowest, "orange", dotted, {compared: false, whole: true});
+  }
+}
+
+function build_fitness(make: FigureBuilder, {subject, births}: FigureRequest): void {
+  const {title, y, children, best, mean, median, worst} = texts.fitness;
+  Object.assign(make.content, {title, y_label: births ? children : y, from_zero: starts_at_zero(subject)});
   make.line("fitness_best", best, "vermilion", plain, {compared: true});
   make.line("fitness_mean", mean, "blue", thick, {compared: true});
   make.line("fitness_median", median, "sky", dotted, {compared: false});

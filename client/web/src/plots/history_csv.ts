@@ -4,7 +4,7 @@ import type {CsvRecord} from "../core/csv";
 import {none_left} from "../core/messages";
 import type {GenerationStatistics} from "../core/protocol";
 import {history_csv_texts as texts} from "../texts/history_csv";
-import type {AccountPart, GenePart, NumberColumn} from "./history_table";
+import type {AccountPart, ColonyPart, GenePart, NumberColumn} from "./history_table";
 
 const number_columns: readonly NumberColumn[] = [
   "generation",   "island",       "end_tick",       "simulated_s",       "organism_count",
@@ -12,8 +12,15 @@ const number_columns: readonly NumberColumn[] = [
   "diversity",    "alive_count",  "starved_count",  "poisoned_count",    "food_eaten",
   "poison_eaten", "clamp_count",  "too_fast_count", "speed_limit_count", "best_organism"
 ];
+const common_columns = 4; // so many of them are the same for both species
 const gene_parts: readonly GenePart[] = ["mean", "deviation", "min", "max"];
 const account_parts: readonly AccountPart[] = ["selection", "transmission", "migration", "change"];
+/** Columns that only colonies have. */
+const colony_parts: readonly ColonyPart[] = [
+  "first_count", "lowest_count", "count_mean", "born_count", "refused_count", "without_room_count", "eaten_count",
+  "old_count", "died_count", "children_mean", "children_variance", "age_mean_s"
+];
+const of_predators = "predators_"; // the prefix of the columns about the predators of a colony
 const island_max = 65535, generation_max = 2 ** 32;
 
 /** Statistics that a file contains. */
@@ -36,14 +43,24 @@ export interface HistoryCsv {
 export function history_csv(history: readonly GenerationStatistics[], gene_names: readonly string[]): string {
   const of_genes = (parts: readonly string[]): string[] =>
     gene_names.flatMap((gene) => parts.map((part) => `${gene}_${part}`));
-  const lines = [csv_line([...number_columns, ...of_genes(gene_parts), ...of_genes(account_parts)])];
-  for (const one of history) {
-    const genes = gene_names.map((_, i) => one.genes?.[i]);
-    lines.push(csv_line([
-      ...number_columns.map((name) => one[name] ?? 0),
-      ...genes.flatMap((gene) => gene_parts.map((part) => gene?.[part] ?? 0)),
+  const of_both = [...of_genes(gene_parts), ...of_genes(account_parts)], own = number_columns.slice(common_columns);
+  const has_colony = history.some((one) => one.colony !== undefined);
+  const has_predators = history.some((one) => one.predators !== undefined);
+  const of_species = (one: GenerationStatistics|undefined): (string|number)[] => {
+    const genes = gene_names.map((_, i) => one?.genes?.[i]);
+    return [
+      ...own.map((name) => one?.[name] ?? 0), ...genes.flatMap((gene) => gene_parts.map((part) => gene?.[part] ?? 0)),
       ...genes.flatMap((gene) => account_parts.map((part) => (gene?.account ? gene.account[part] ?? 0 : ""))),
-    ]));
+      ...(has_colony ? colony_parts.map((part) => one?.colony?.[part] ?? 0) : [])
+    ];
+  };
+  const columns = [...own, ...of_both, ...(has_colony ? colony_parts : [])];
+  const twins = has_predators ? columns.map((name) => of_predators + name) : [];
+  const common = number_columns.slice(0, common_columns);
+  const lines = [csv_line([...common, ...columns, ...twins])];
+  for (const one of history) {
+    const predators = has_predators ? of_species(one.predators) : [];
+    lines.push(csv_line([...common.map((name) => one[name] ?? 0), ...of_species(one), ...predators]));
   }
   return `${lines.join("\n")}\n`;
 }
@@ -122,9 +139,11 @@ interface Columns {
   count: number;
   gene_names: string[];
   required: Place[]; // cells that must be numbers
-  accounts: Place[]; // cells that may be empty
+  accounts: Place[]; // cells that may be empty, with those of colonies
   numbers: Place<NumberColumn>[];
   genes: {parts: Place<GenePart>[]; account: Place<AccountPart>[] | null}[];
+  colony: Place<ColonyPart>[]; // of the prey; empty: the run is not a colony
+  predators: Place<ColonyPart>[];
   others: Place[]; // columns that are not statistics
 }
 
@@ -134,7 +153,9 @@ function columns_of({line, cells}: CsvRecord): Columns|string {
   if (twice !== undefined) {
     return texts.column_twice(line, twice);
   }
-  const gene_names = cells.filter((name) => name.endsWith("_mean") && name !== "fitness_mean")
+  const colony = colony_parts.flatMap((part) => [part, of_predators + part]).filter((name) => at.has(name));
+  const is_of_colony = (name: string): boolean => name.startsWith(of_predators) || colony.includes(name);
+  const gene_names = cells.filter((name) => name.endsWith("_mean") && name !== "fitness_mean" && !is_of_colony(name))
                        .map((name) => name.slice(0, -"_mean".length));
   const of_genes = (parts: readonly string[]): string[] =>
     gene_names.flatMap((gene) => parts.map((part) => `${gene}_${part}`));
@@ -143,10 +164,12 @@ function columns_of({line, cells}: CsvRecord): Columns|string {
   if (missing !== undefined) {
     return texts.no_column(line, missing);
   }
-  const accounts = of_genes(account_parts).filter((name) => at.has(name));
+  const accounts = [...of_genes(account_parts).filter((name) => at.has(name)), ...colony];
   const place = (name: string): Place => [name, at.get(name)!];
   const places_of = <Part extends string>(gene: string, parts: readonly Part[]): Place<Part>[] =>
     parts.map((part) => [part, at.get(`${gene}_${part}`)!]);
+  const places_in_colony = (prefix: string): Place<ColonyPart>[] =>
+    colony_parts.flatMap((part): Place<ColonyPart>[] => at.has(prefix + part) ? [[part, at.get(prefix + part)!]] : []);
   const statistics = new Set([...required, ...accounts]);
   return {
     count: cells.length,
@@ -159,7 +182,9 @@ function columns_of({line, cells}: CsvRecord): Columns|string {
         parts: places_of(gene, gene_parts),
         account: account_parts.every((part) => at.has(`${gene}_${part}`)) ? places_of(gene, account_parts) : null
       })),
-    others: [...at].filter(([name]) => !statistics.has(name)),
+    colony: places_in_colony(""),
+    predators: places_in_colony(of_predators),
+    others: [...at].filter(([name]) => !statistics.has(name) && !is_of_colony(name)),
   };
 }
 
@@ -185,14 +210,21 @@ function row_of({line, cells}: CsvRecord, columns: Columns): Statistics|string {
     return made;
   };
   const statistics: Statistics = picked(columns.numbers);
+  const has = (places: readonly Place[]): boolean =>
+    places.length > 0 && places.every(([, at]) => Number.isFinite(numbers[at]));
+  if (has(columns.colony)) {
+    statistics.colony = picked(columns.colony);
+  }
+  if (has(columns.predators)) {
+    statistics.predators = {colony: picked(columns.predators)};
+  }
   for (const [name, least, most] of [["generation", 1, generation_max], ["island", 0, island_max]] as const) {
     if (!Number.isInteger(statistics[name]) || statistics[name] < least || statistics[name] > most) {
       return texts.not_whole(line, name, String(statistics[name]), least, most);
     }
   }
   statistics.genes = columns.genes.map(({parts, account}) => {
-    const has_account = account !== null && account.every(([, at]) => Number.isFinite(numbers[at]));
-    return {...picked(parts), ...(has_account ? {account: picked(account)} : {})};
+    return {...picked(parts), ...(account !== null && has(account) ? {account: picked(account)} : {})};
   });
   return statistics;
 }

@@ -3,7 +3,7 @@
 // Columns are computed when they are needed, and extended when generations are added. For all islands together, means
 // are weighted by the number of organisms, and deviations are those of the combined population. The median of all
 // islands is NaN: it does not follow from the medians of the islands.
-import type {GeneAccount, GenerationStatistics, GeneStatistics} from "../core/protocol";
+import type {ColonyStatistics, GeneAccount, GenerationStatistics, GeneStatistics} from "../core/protocol";
 
 export type Island = number|null; // null: all islands together
 
@@ -11,8 +11,10 @@ export type Island = number|null; // null: all islands together
 export type NumberColumn = Exclude<keyof GenerationStatistics, "genes"|"colony"|"predators">;
 export type GenePart = Exclude<keyof GeneStatistics, "account">;
 export type AccountPart = keyof GeneAccount;
-/** A column of a table: "fitness_best", "gene:0:mean". */
-export type Column = NumberColumn|`gene:${number}:${GenePart|AccountPart}`;
+export type ColonyPart = keyof ColonyStatistics;
+/** A column of a table: "fitness_best", "gene:0:mean"; of a colony: "colony:count_mean", "predators:count_mean". */
+export type Column =
+  NumberColumn|`gene:${number}:${GenePart | AccountPart}`|`${"colony" | "predators"}:${ColonyPart}`;
 
 const sums = new Set<Column>([
   "organism_count", "alive_count", "starved_count", "poisoned_count", "food_eaten", "poison_eaten", "clamp_count",
@@ -131,6 +133,10 @@ export class HistoryTable {
 
 /** Returns a number of one island; NaN if it is unknown. Fields of the value 0 are absent in messages. */
 function number_of(statistics: GenerationStatistics, name: Column): number {
+  if (is_of_colony(name)) {
+    const {colony, predators} = statistics, [species, part] = name.split(":");
+    return colony === undefined ? NaN : (species === "colony" ? colony : predators?.colony)?.[part as ColonyPart] ?? 0;
+  }
   const gene_part = part_of(name);
   if (gene_part === null) {
     return statistics[name as NumberColumn] ?? 0;
@@ -145,6 +151,10 @@ function number_of(statistics: GenerationStatistics, name: Column): number {
     default:
       return gene?.account === undefined ? NaN : gene.account[part] ?? 0;
   }
+}
+
+function is_of_colony(name: Column): boolean {
+  return name.startsWith("colony:") || name.startsWith("predators:");
 }
 
 /** Returns what a column shows of a gene; null if it is not about a gene. */
@@ -162,7 +172,7 @@ function all_islands(row: readonly GenerationStatistics[], name: Column): number
     return number_of(islands[0]!, name);
   }
   const numbers = islands.map((one) => number_of(one, name)), part = part_of(name)?.part;
-  if (sums.has(name)) {
+  if (sums.has(name) || is_of_colony(name)) {
     return numbers.reduce((sum, number) => sum + number, 0);
   }
   if (greatest.has(name) || part === "max") {

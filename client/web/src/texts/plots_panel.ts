@@ -1,7 +1,9 @@
 // plots_panel: the panel "Plots" and its plots over generations.
-import {shown_number, with_separators} from "./numbers";
+import {shown_number, three_digits, with_separators} from "./numbers";
 
 export const quantity_texts = {
+  population: "Population",
+  phase: "Phase plot",
   fitness: "Fitness",
   genes: "Genes",
   selection: "Selection",
@@ -13,9 +15,18 @@ export const quantity_texts = {
 
 export const figure_texts = {
   generation: "generation",
+  interval: "interval",
   series_of: (series: string, history: string) => `${series}, ${history}`,
   deviation: "± 1 standard deviation",
-  fitness: {title: "Fitness", y: "fitness", best: "best", mean: "mean", median: "median", worst: "worst"},
+  fitness: {
+    title: "Fitness",
+    y: "fitness",
+    children: "children",
+    best: "best",
+    mean: "mean",
+    median: "median",
+    worst: "worst"
+  },
   genes: {
     title: "Means of the genes",
     of_one: (gene: string) => `Gene ${gene}`,
@@ -37,12 +48,35 @@ export const figure_texts = {
   },
   diversity: {title: "Diversity", y: "mean standard deviation, as a share of the gene's range", diversity: "diversity"},
   survivors: {title: "Alive at the end", y: "organisms", alive: "alive at the end", born: "born"},
-  deaths:
-    {title: "Causes of death", y: "organisms", starved: "starved", poisoned: "poisoned", alive: "alive at the end"},
+  deaths: {
+    title: "Causes of death",
+    y: "organisms",
+    starved: "starved",
+    poisoned: "poisoned",
+    eaten: "eaten by predators",
+    old: "of old age",
+    alive: "alive at the end"
+  },
+  population: {
+    title: "Population",
+    y: "living organisms",
+    prey: "prey, mean",
+    prey_lowest: "prey, fewest",
+    predators: "predators, mean",
+    predators_lowest: "predators, fewest"
+  },
   food: {title: "Food and poison eaten", y: "items per generation", food: "food eaten", poison: "poison eaten"},
   values: {title: (gene: string) => `Values of ${gene}`, y: "organisms", organisms: "organisms", none: "…"},
   all_died: (generation: number) => `generation ${generation}: all organisms died before its end`,
   extinction: "all died",
+  phase: {
+    title: "Prey and predators",
+    prey: "prey, mean of the generation",
+    predators: "predators, mean of the generation",
+    newest: (generation: number, prey: number, predators: number) =>
+      `Circle: generation ${with_separators(generation)}, ${three_digits(prey)} prey, ${
+        three_digits(predators)} predators. The line leads there; its older parts are paler.`,
+  },
 };
 
 export const plots_panel_texts = {
@@ -55,6 +89,9 @@ export const plots_panel_texts = {
   running_mean_help: "Running mean: each point is the mean of that generation and the ones before it. " +
     "Pale lines show each generation.",
   each_generation: "each generation",
+  species: "Species",
+  prey: "prey",
+  predators: "predators",
   fit: "Fit",
   fit_help: "Shows all generations.",
   save_csv: "Save CSV",

@@ -2,9 +2,11 @@
 import type * as english from "../texts/plots_panel";
 
 import {gene_label} from "./genes";
-import {shown_number, with_separators} from "./numbers";
+import {shown_number, three_digits, with_separators} from "./numbers";
 
 export const quantity_texts: typeof english.quantity_texts = {
+  population: "Bestand",
+  phase: "Phasendiagramm",
   fitness: "Fitness",
   genes: "Gene",
   selection: "Selektion",
@@ -16,9 +18,18 @@ export const quantity_texts: typeof english.quantity_texts = {
 
 export const figure_texts: typeof english.figure_texts = {
   generation: "Generation",
+  interval: "Intervall",
   series_of: (series, history) => `${series}, ${history}`,
   deviation: "± 1 Standardabweichung",
-  fitness: {title: "Fitness", y: "Fitness", best: "beste", mean: "Mittelwert", median: "Median", worst: "schlechteste"},
+  fitness: {
+    title: "Fitness",
+    y: "Fitness",
+    children: "Kinder",
+    best: "beste",
+    mean: "Mittelwert",
+    median: "Median",
+    worst: "schlechteste"
+  },
   genes: {
     title: "Mittelwerte der Gene",
     of_one: (gene) => `Gen ${gene_label(gene)}`,
@@ -41,12 +52,35 @@ export const figure_texts: typeof english.figure_texts = {
   diversity:
     {title: "Vielfalt", y: "mittlere Standardabweichung, als Anteil am Bereich des Gens", diversity: "Vielfalt"},
   survivors: {title: "Am Ende am Leben", y: "Organismen", alive: "am Ende am Leben", born: "geboren"},
-  deaths:
-    {title: "Todesursachen", y: "Organismen", starved: "verhungert", poisoned: "vergiftet", alive: "am Ende am Leben"},
+  deaths: {
+    title: "Todesursachen",
+    y: "Organismen",
+    starved: "verhungert",
+    poisoned: "vergiftet",
+    eaten: "von Räubern gefressen",
+    old: "an Altersschwäche",
+    alive: "am Ende am Leben"
+  },
+  population: {
+    title: "Bestand",
+    y: "lebende Organismen",
+    prey: "Beute, Mittelwert",
+    prey_lowest: "Beute, wenigste",
+    predators: "Räuber, Mittelwert",
+    predators_lowest: "Räuber, wenigste"
+  },
   food: {title: "Gefressenes Futter und Gift", y: "Stück pro Generation", food: "Futter", poison: "Gift"},
   values: {title: (gene) => `Werte von ${gene_label(gene)}`, y: "Organismen", organisms: "Organismen", none: "…"},
   all_died: (generation) => `Generation ${generation}: Alle Organismen starben vor ihrem Ende`,
   extinction: "alle gestorben",
+  phase: {
+    title: "Beute und Räuber",
+    prey: "Beute, Mittelwert der Generation",
+    predators: "Räuber, Mittelwert der Generation",
+    newest: (generation, prey, predators) => `Kreis: Generation ${with_separators(generation)}, ${
+      three_digits(prey)} Beutetiere, ${
+      three_digits(predators)} Räuber. Die Linie führt dorthin; ihre älteren Teile sind blasser.`,
+  },
 };
 
 export const plots_panel_texts: typeof english.plots_panel_texts = {
@@ -59,6 +93,9 @@ export const plots_panel_texts: typeof english.plots_panel_texts = {
   running_mean_help: "Gleitendes Mittel: Jeder Punkt ist das Mittel dieser Generation und der Generationen davor. " +
     "Blasse Linien zeigen jede Generation.",
   each_generation: "jede Generation",
+  species: "Art",
+  prey: "Beute",
+  predators: "Räuber",
   fit: "Einpassen",
   fit_help: "Zeigt alle Generationen.",
   save_csv: "CSV speichern",

@@ -86,6 +86,12 @@ export class ViewedWorld {
     return fitness === "life" || (fitness === "external" && value_in_effect(set, "external_bodies")?.flag === true);
   }
 
+  /** Whether organisms give birth while the world runs: a generation is an interval, and fitness is the number of
+   *  children. */
+  get has_births(): boolean {
+    return value_in_effect(this.parameters.set, "reproduction")?.choice === "births";
+  }
+
   get gene_names(): string[] {
     return this.feed.gene_names;
   }
