@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { bundle } from "./bundle.mjs";
 
-const organism = await bundle("organism");
+const organism = await bundle("organism"), { Selection } = await bundle("world/selection");
 const place = { run_id: "r", island: 1, generation: 5, id: 3 };
 const none = 0xffffffff;
 
@@ -38,6 +38,66 @@ test("a dead organism keeps its last network", () => {
   history.add_info(info({ alive: undefined, lived_s: 3, cause_of_death: "CAUSE_OF_DEATH_POISONED" }));
   assert.deepEqual(history.brain, { inputs: [1] });
   assert.equal(organism.fate_text(history), "died of poison after 3.0 s");
+});
+
+const born = (fields = {}) => info({ number: 120, age_s: 2, parents: [4, 4], ...fields });
+
+test("with births nothing is asked about picks", () => {
+  const history = new organism.OrganismHistory(place);
+  history.add_info(born());
+  assert.equal(history.wanted(true), null);
+  assert.equal(organism.birth_text(history), "Child of organism 4 of this interval");
+  history.add_info(born({ parents: [4, 9] }));
+  assert.equal(organism.birth_text(history), "Child of organisms 4 and 9 of this interval");
+  history.add_info(born({ parents: [], placed_tick: 7 }));
+  assert.match(organism.birth_text(history), /^No parents: placed by a user after tick 7/);
+});
+
+test("with births a life goes on over intervals", () => {
+  const before = new organism.OrganismHistory(place), after = { ...place, id: 1, generation: 6 };
+  before.add_info(born({ health: 50 }));
+  const same = new organism.OrganismHistory(after, before), other = new organism.OrganismHistory(after, before);
+  const next = { id: 1, generation: 6, age_s: 5, lived_s: 1, health: 30, parents: [3, 3] };
+  same.add_info(born(next));
+  other.add_info(born({ ...next, number: 121 }));
+  assert.deepEqual(same.health, [{ s: 2, health: 50 }, { s: 5, health: 30 }]);
+  assert.deepEqual(other.health, [{ s: 5, health: 30 }]);
+  assert.equal(organism.birth_text(same), "It was born before this interval");
+  assert.equal(organism.fate_text(same), "alive for 5.0 s, health 30.0");
+});
+
+test("a predator hunts, handles and dies of old age", () => {
+  const predator = info({ species: "SPECIES_PREDATOR", choice: "CHOICE_SEEK", target_x_px: 5, target_y_px: 6 });
+  assert.equal(organism.choice_text(predator), "about to hunt prey at (5, 6)");
+  assert.equal(organism.choice_text({ ...predator, handling_s: 2.5 }), "handles its prey for another 2.5 s");
+  assert.match(organism.choice_text(info({ choice: "CHOICE_FLEE" }), true), /^about to flee from poison or a predator at/);
+  const history = new organism.OrganismHistory(place);
+  history.add_info(info({ alive: false, cause_of_death: "CAUSE_OF_DEATH_OLD" }));
+  assert.equal(organism.fate_text(history), "died of old age after 2.0 s");
+  history.add_info(info({ alive: false, cause_of_death: "CAUSE_OF_DEATH_EATEN" }));
+  assert.equal(organism.fate_text(history), "eaten by a predator after 2.0 s");
+});
+
+test("a followed organism is found again by its number", async () => {
+  // The interval began with the prey 3, 40, 120, 200 and the predators 50, 90; 300 and 301 were born in it.
+  const living = [[3], [40], [120], [200], [50, 1], [90, 1], [300, 0, 1], [301, 1, 1]];
+  const asked = [];
+  const request = async (_, { organism }) => {
+    asked.push(organism);
+    const [number, is_predator, is_new] = living[organism];
+    return { generation: 2, number, lived_s: 1, age_s: is_new ? 1 : 9, ...(is_predator ? { species: "SPECIES_PREDATOR" } : {}) };
+  };
+  const feed = { world: "w", island: 0, pane: 0, snapshot: { run_id: "r", generation: 1 }, server: { request, post: () => undefined } };
+  for (const [number, species, id] of [[120, undefined, 2], [3, undefined, 0], [90, "SPECIES_PREDATOR", 5], [41, undefined, null]]) {
+    const selection = new Selection(feed, { notify: () => undefined }, () => undefined);
+    selection.select(7);
+    selection.set_follow(true);
+    selection.info = { number, species };
+    selection.follow_generation({ run_id: "r", generation: 2, live: { organism_count: living.length } });
+    await new Promise((resolve) => setTimeout(resolve));
+    assert.deepEqual([selection.id, selection.follow, selection.is_lost], [id, id !== null, id === null], String(number));
+  }
+  assert.ok(asked.length <= 4 * 4);
 });
 
 test("picks of the parents are requested, then its own", () => {

@@ -54,11 +54,26 @@ export class OrganismHistory {
   children: Child[]|null = null; // null: unknown
   parents_bred_elsewhere = false; // before the run began, which is a fork
   children_left_out = false; // the next generation is too large to search it
+  #before: OrganismHistory|null;
   #parent_picks: Picks[] = [];
   #descendants_read = 0;
   #found: Child[] = [];
 
-  constructor(readonly place: OrganismPlace) {}
+  /** before: of the previous interval, if the organism may be the same. */
+  constructor(readonly place: OrganismPlace, before: OrganismHistory|null = null) {
+    this.#before = before;
+  }
+
+  /** Whether its world has births: the organism has a number and lives on over intervals. */
+  get has_births(): boolean {
+    return this.info?.number !== undefined;
+  }
+
+  /** Whether it was born before this interval. */
+  get is_older(): boolean {
+    const {age_s = 0, lived_s = 0} = this.info ?? {};
+    return this.has_births && age_s > lived_s + 1e-6;
+  }
 
   get dead(): boolean {
     return this.info !== null && this.info.alive !== true;
@@ -75,7 +90,11 @@ export class OrganismHistory {
     if (info.brain) {
       this.brain = info.brain;
     }
-    const s = info.lived_s ?? 0;
+    if (this.#before?.info?.number === info.number && this.has_births) {
+      this.health.push(...this.#before!.health);
+    }
+    this.#before = null;
+    const s = age_of(info);
     const last = this.health[this.health.length - 1];
     if (last && s <= last.s) {
       return;
@@ -102,6 +121,9 @@ export class OrganismHistory {
    *  has_bred  whether the organism's own generation has bred */
   wanted(has_bred: boolean): BreedingRequest|null {
     const {island, generation} = this.place;
+    if (this.has_births) {
+      return null; // nothing picks parents
+    }
     for (const parent of distinct_parents(this.info)) {
       if (!this.picks_of_parent(parent) && !this.parents_bred_elsewhere) {
         return {
@@ -186,6 +208,11 @@ export class OrganismHistory {
 /** Whether the descendant has the genes of its parent. */
 function is_copy({order_mutation, mutations = []}: Descendant): boolean {
   return !order_mutation && mutations.length === 0;
+}
+
+/** Seconds that an organism has lived, of its whole life. */
+export function age_of({number, age_s, lived_s}: OrganismInfo): number {
+  return (number === undefined ? lived_s : age_s) ?? 0;
 }
 
 /** The parents of an organism, each once. */

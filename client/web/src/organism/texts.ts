@@ -3,6 +3,7 @@
 import {none_left} from "../core/messages";
 import type {OrganismInfo} from "../core/protocol";
 import {organism_texts as texts} from "../texts/organism";
+import {age_of} from "./history";
 import type {Child, OrganismHistory, Origin, Picks} from "./history";
 
 export {gene_label, gene_number} from "../texts/genes";
@@ -12,7 +13,7 @@ export function fate_text(history: OrganismHistory): string {
   if (!info) {
     return "";
   }
-  const lived_s = info.lived_s ?? 0;
+  const lived_s = age_of(info);
   if (info.alive) {
     return history.ended ? texts.alive_when_last_seen(lived_s) : texts.alive(lived_s, info.health ?? 0);
   }
@@ -35,15 +36,19 @@ export function fate_text(history: OrganismHistory): string {
   }
 }
 
-export function choice_text(info: OrganismInfo): string {
+/** has_predators: the organism may flee from one. */
+export function choice_text(info: OrganismInfo, has_predators = false): string {
   const x_px = info.target_x_px ?? 0, y_px = info.target_y_px ?? 0;
+  if (info.handling_s) {
+    return texts.handles(info.handling_s);
+  }
   switch (info.choice) {
     case "CHOICE_WANDER":
       return texts.wanders;
     case "CHOICE_SEEK":
-      return texts.seeks(x_px, y_px);
+      return info.species === "SPECIES_PREDATOR" ? texts.hunts(x_px, y_px) : texts.seeks(x_px, y_px);
     case "CHOICE_FLEE":
-      return texts.flees(x_px, y_px);
+      return has_predators ? texts.flees_threat(x_px, y_px) : texts.flees(x_px, y_px);
     case "CHOICE_STEER":
       return texts.steers;
     case "CHOICE_UNSPECIFIED":
@@ -70,6 +75,16 @@ export function parents_text(info: OrganismInfo, origin: Origin): string {
   const why: {[from in Origin]:
                 string} = {elite: texts.of_elite, survivor: texts.of_survivors, child: texts.both_parents, unknown: ""};
   return texts.one_parent(first, generation, why[origin]);
+}
+
+/** With births. */
+export function birth_text({info, is_older}: OrganismHistory): string {
+  const [first, second] = info?.parents ?? [];
+  return info === null ? "" :
+    is_older           ? texts.born_before :
+    first === undefined ? parents_text(info, "unknown") :
+    first === (second ?? first) ? texts.child_of_parent(first) :
+                                  texts.child_of_parents(first, second!);
 }
 
 /** "Its parent 45 was picked 3 of 25 times, expected 1.71." */

@@ -105,8 +105,9 @@ export class OrganismPanel implements Panel {
       return;
     }
     if (place !== known) {
+      const before = this.#history;
       this.#forget();
-      this.#history = new OrganismHistory(place);
+      this.#history = new OrganismHistory(place, before);
     }
     const history = this.#history!;
     history.ended = world.snapshot!.generation !== history.place.generation;

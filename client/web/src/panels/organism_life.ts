@@ -26,6 +26,7 @@ export class OrganismLife {
   readonly #action = h("p", {});
   readonly #follow: HTMLInputElement;
   readonly #follow_row: HTMLElement;
+  readonly #children = h("p", {});
   readonly #eaten = h("p", {});
   readonly #body = h("p", {});
   readonly elements: readonly HTMLElement[];
@@ -38,22 +39,32 @@ export class OrganismLife {
     const deselect = button(texts.deselect, () => actions.deselect());
     this.elements = [
       h("div", {class: "row organism-head"}, this.#heading, this.#back), this.#fate, this.#action,
-      row(this.#follow_row, this.#family, deselect), h("div", {}, this.#eaten, this.#body)
+      row(this.#follow_row, this.#family, deselect), h("div", {}, this.#children, this.#eaten, this.#body)
     ];
   }
 
   update(world: ViewedWorld, history: OrganismHistory): void {
     const {info, place} = history;
-    set_text(this.#heading, texts.heading(place.id, place.generation));
+    const is_predator = info?.species === "SPECIES_PREDATOR";
+    set_text(
+      this.#heading,
+      info?.number !== undefined ? texts.numbered(info.number, is_predator) :
+        is_predator              ? texts.predator(place.id, place.generation) :
+                                   texts.heading(place.id, place.generation));
     this.#back.hidden = !world.is_replay;
     set_text(this.#fate, info ? fate_text(history) : texts.loading);
     this.#fate.classList.toggle("dead", history.dead);
     const acts = info !== null && !history.dead && !history.ended;
-    set_text(this.#action, acts ? choice_text(info) : "");
+    set_text(this.#action, acts ? choice_text(info, world.feed.drawing?.predators) : "");
     this.#action.hidden = !acts;
     this.#follow_row.hidden = !acts;
     this.#follow.checked = world.selection.follow;
-    set_text(this.#eaten, info ? texts.eaten(info.food_eaten ?? 0, info.poison_eaten ?? 0) : "");
+    set_text(
+      this.#eaten,
+      !info         ? "" :
+        is_predator ? texts.eaten_prey(info.food_eaten ?? 0) :
+                      texts.eaten(info.food_eaten ?? 0, info.poison_eaten ?? 0));
+    set_text(this.#children, history.has_births ? texts.children(info?.children ?? 0) : "");
     set_text(this.#body, info ? texts.body(info.radius_px ?? 0, info.mass_kg ?? 0) : "");
     this.#family.hidden = info === null;
   }

@@ -1,7 +1,7 @@
 // OrganismOrigin and OrganismOffspring: why the selected organism exists, and which offspring it has.
 import {distinct_parents} from "../organism/history";
 import type {OrganismHistory} from "../organism/history";
-import {child_text, parents_text, picks_text} from "../organism/texts";
+import {birth_text, child_text, parents_text, picks_text} from "../organism/texts";
 import {organism_texts as texts} from "../texts/organism";
 import {h, set_text} from "../widgets/dom";
 import {button, row} from "../widgets/form";
@@ -25,6 +25,7 @@ export class OrganismOrigin {
   readonly #parents = h("p", {});
   readonly #parent_rows = h("div", {class: "organism-parents"});
   readonly #own_picks = h("p", {});
+  readonly #show_picks_row: HTMLElement;
   readonly #show_picks = button(texts.show_picks, () => this.#open_own_picks());
   readonly #problem = h("p", {class: "error", role: "status"});
   readonly #note: OriginNote;
@@ -35,14 +36,16 @@ export class OrganismOrigin {
   constructor(panel: PanelContext, context: OriginContext) {
     this.#context = context;
     this.#note = new OriginNote(panel, () => undefined);
+    this.#show_picks_row = row(this.#show_picks);
     this.element =
       h("section", {class: "panel organism-part"}, h("h3", {}, texts.why), this.#parent_rows, this.#parents,
-        this.#own_picks, row(this.#show_picks), this.#problem, this.#note.element);
+        this.#own_picks, this.#show_picks_row, this.#problem, this.#note.element);
   }
 
   update(history: OrganismHistory): void {
     this.#history = history;
-    const {info, picks, place} = history, parents = distinct_parents(info), problem = this.#context.problem();
+    const {info, picks, place} = history, problem = this.#context.problem();
+    const parents = history.is_older ? [] : distinct_parents(info);
     const known = parents.map((parent) => `${parent}:${history.picks_of_parent(parent) !== null}`);
     const described = JSON.stringify([place, known, problem]);
     if (described !== this.#built) {
@@ -53,7 +56,9 @@ export class OrganismOrigin {
       const of_parent = history.picks_of_parent(parent);
       return of_parent ? [picks_text(texts.its_parent(parent), of_parent)] : [];
     });
-    set_text(this.#parents, info ? [`${parents_text(info, history.origin)}.`, ...of_parents].join(" ") : "");
+    const text = history.has_births ? birth_text(history) : info ? parents_text(info, history.origin) : "";
+    set_text(this.#parents, text === "" ? "" : [`${text}.`, ...of_parents].join(" "));
+    this.#show_picks_row.hidden = history.has_births;
     set_text(this.#own_picks, picks ? picks_text(texts.it, picks) : "");
     this.#own_picks.hidden = picks === null;
     this.#show_picks.disabled = picks === null;
@@ -67,6 +72,11 @@ export class OrganismOrigin {
   }
 
   #parent_row(history: OrganismHistory, parent: number): HTMLElement {
+    if (history.has_births) { // of the same interval
+      const {island, generation} = history.place;
+      const go_to = button(texts.go_to_parent(parent), () => this.#context.go_to(generation, island, parent));
+      return row(go_to);
+    }
     const picks = history.picks_of_parent(parent), {island} = history.place, generation = history.place.generation - 1;
     // Only the picks contain whether the parent is a copy of an organism of another island.
     const origin = picks?.migrant ?? {island, organism: parent};
@@ -99,7 +109,8 @@ export class OrganismOffspring {
     this.#context = context;
   }
 
-  update({place, children, children_left_out}: OrganismHistory): void {
+  update({place, children, children_left_out, has_births}: OrganismHistory): void {
+    this.element.hidden = has_births;
     const next = place.generation + 1, has_bred = this.#context.has_bred();
     const described = JSON.stringify([place, children?.length, children_left_out, has_bred]);
     if (described === this.#built) {

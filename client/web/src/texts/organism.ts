@@ -13,12 +13,18 @@ export const organism_texts = {
   waiting: "Waiting for the first snapshot …",
 
   heading: (id: number, generation: number) => `Organism ${id} of generation ${with_separators(generation)}`,
+  predator: (id: number, generation: number) => `Predator ${id} of generation ${with_separators(generation)}`,
+  /** With births: an organism has one number in its whole life. */
+  numbered: (number: number, is_predator: boolean) =>
+    `${is_predator ? "Predator" : "Organism"} number ${with_separators(number)}`,
   back: "Back to live",
   back_help: "Returns to the live world.",
   deselect: "Deselect",
   family: "Family tree",
   follow: "keep it centred",
   eaten: (food: number, poison: number) => `eaten: ${with_separators(food)} food, ${with_separators(poison)} poison`,
+  eaten_prey: (count: number) => `eaten: ${with_separators(count)} prey`,
+  children: (count: number) => `children: ${with_separators(count)}`,
   body: (radius_px: number, mass_kg: number) => `radius ${tenths(radius_px)} px, mass ${mass_kg.toFixed(2)} kg`,
 
   alive: (lived_s: number, health: number) => `alive for ${tenths(lived_s)} s, health ${tenths(health)}`,
@@ -32,6 +38,9 @@ export const organism_texts = {
   wanders: "about to wander",
   seeks: (x_px: number, y_px: number) => `about to seek food at ${place(x_px, y_px)}`,
   flees: (x_px: number, y_px: number) => `about to flee from poison at ${place(x_px, y_px)}`,
+  flees_threat: (x_px: number, y_px: number) => `about to flee from poison or a predator at ${place(x_px, y_px)}`,
+  hunts: (x_px: number, y_px: number) => `about to hunt prey at ${place(x_px, y_px)}`,
+  handles: (seconds: number) => `handles its prey for another ${tenths(seconds)} s`,
   steers: "steered by its network",
 
   why: "Why it exists",
@@ -44,6 +53,9 @@ export const organism_texts = {
   both_parents: ", which was both parents",
   parents: (first: number, second: number, generation: number) =>
     `Parents: ${first} and ${second} (generation ${with_separators(generation)})`,
+  born_before: "It was born before this interval",
+  child_of_parent: (parent: number) => `Child of organism ${parent} of this interval`,
+  child_of_parents: (first: number, second: number) => `Child of organisms ${first} and ${second} of this interval`,
   go_to_parent: (parent: number) => `Go to parent ${parent}`,
   go_to_parent_help: "Shows the parent alive, in a replay of its generation.",
   why_parent: (parent: number) => `Why ${parent}?`,

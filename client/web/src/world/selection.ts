@@ -73,13 +73,42 @@ export class Selection {
       remembered.generation === next.generation;
     const ends = this.id !== null && before !== null && before.generation !== next.generation;
     if (again ? this.id === null : ends) {
+      const {info, follow} = this;
       this.id = again ? remembered.id : null;
       this.#lose();
       this.follow = again && remembered.follow;
       this.at = this.info = null;
       this.#info_tick = -1;
       this.post();
+      if (!again && info?.number !== undefined) {
+        this.is_lost = false;
+        void this.#find_again(info, follow, next);
+      }
     }
+  }
+
+  /** With births, finds the organism in the next interval, where it has another id: first come the prey, then the
+   *  predators, each in the order of their numbers, and then those that were born in this interval. */
+  async #find_again(sought: OrganismInfo, follow: boolean, next: SnapshotInfo): Promise<void> {
+    const {world, island, server} = this.#feed, rank = (one: OrganismInfo): number =>
+      (one.species === "SPECIES_PREDATOR" ? 2 ** 32 : 0) + (one.number ?? 0);
+    for (let low = 0, high = next.live?.organism_count ?? 0; low < high;) {
+      const organism = (low + high) >> 1;
+      const found = await server.request("get_organism", {world, island, organism}).catch(() => null);
+      const is_shown = this.id === null && world === this.#feed.world && island === this.#feed.island;
+      if (found?.generation !== next.generation || !is_shown) {
+        return;
+      }
+      const is_born_here = (found.age_s ?? 0) < (found.lived_s ?? 0) + 1e-6;
+      if (!is_born_here && rank(found) === rank(sought)) {
+        this.select(organism);
+        this.set_follow(follow);
+        return;
+      }
+      [low, high] = is_born_here || rank(found) > rank(sought) ? [low, organism] : [organism + 1, high];
+    }
+    this.is_lost = follow;
+    this.#changes.notify();
   }
 
   /** Call it after the feed has taken a snapshot. */
