@@ -32,6 +32,13 @@ test("a fitness has the text of all programs", () => {
   assert.equal(page.fitness_text(NaN), "–");
 });
 
+test("a colony has the counts of both species", () => {
+  const snapshot = { tick: 60, simulated_s: 1, live: { alive_count: 170, organism_count: 230, predator_count: 20, born_count: 30, health_mean: 90 } };
+  assert.deepEqual(page.statistics_texts(snapshot, true).slice(0, 2), ["alive 170 of 230", "mean health 90.0"]);
+  assert.deepEqual(page.statistics_texts(snapshot, true, true, true).slice(0, 3), ["prey 150", "predators 20", "born 30"]);
+  assert.deepEqual(page.statistics_texts(snapshot, true, true).slice(0, 2), ["alive 170", "born 30"]);
+});
+
 test("durations have the format of all programs", () => {
   for (const [seconds, text] of [[0, "0.0 s"], [59.96, "60.0 s"], [245, "4:05 min"], [119.9999, "2:00 min"], [7200, "2:00:00 h"]]) {
     assert.equal(page.duration(seconds), text);

@@ -120,7 +120,7 @@ export class PaneArea {
   #refresh(): void {
     const world = this.world, {snapshot, info, server} = world;
     const replay_of = info?.replay && (info.replay.replay_of || pane_texts.a_file);
-    set_text(this.#generation, snapshot ? pane_texts.generation(snapshot.generation) : "");
+    set_text(this.#generation, snapshot ? pane_texts.generation(snapshot.generation, world.has_births) : "");
     this.#replay.hidden = !replay_of;
     set_text(this.#replay, replay_of ? pane_texts.replay_of(replay_of) : "");
     const is_running = world.control.state === "RUN_STATE_RUNNING", with_rate = this.pane.view.size.width > narrow;
@@ -131,7 +131,10 @@ export class PaneArea {
     set_text(this.#state, this.#state_text() + (runs_now && info?.slowed ? pane_texts.slower : ""));
     set_attribute(this.#state, "data-state", runs_now ? "running" : "stopped");
     this.#refresh_islands();
-    const reading = world.feed.reading?.info, texts = reading ? statistics_texts(reading, world.has_bodies) : [];
+    const {reading, drawing} = world.feed;
+    const texts = reading === null ?
+      [] :
+      statistics_texts(reading.info, world.has_bodies, world.has_births, drawing?.predators);
     while (this.#foot.children.length > texts.length) {
       this.#foot.lastElementChild!.remove();
     }

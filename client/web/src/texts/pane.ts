@@ -22,7 +22,8 @@ export const pane_texts = {
   waiting: "Waiting for the first snapshot …",
   world: "World",
   world_named: (name: string, is_replay: boolean) => `World ${name}${is_replay ? ", replay" : ""}`,
-  generation: (generation: number) => `Generation ${with_separators(generation)}`,
+  generation: (generation: number, has_births: boolean) =>
+    `${has_births ? "Interval" : "Generation"} ${with_separators(generation)}`,
   replay_of: (world: string) => `REPLAY of ${world}`,
   a_file: "a file",
   not_connected: "not connected",

@@ -14,13 +14,17 @@ export function place_and_speed_text(
 }
 
 /** "alive 50 of 50", "mean health 131.3", …; of organisms without bodies only the tick. */
-export function statistics_texts(snapshot: SnapshotInfo, has_bodies: boolean): string[] {
-  const live = snapshot.live;
+export function statistics_texts(
+  snapshot: SnapshotInfo, has_bodies: boolean, has_births = false, has_predators = false): string[] {
+  const live = snapshot.live, predators = has_predators ? live?.predator_count ?? 0 : 0;
   return [
     ...(
       live && has_bodies ?
         [
-          `alive ${with_separators(live.alive_count ?? 0)} of ${with_separators(live.organism_count ?? 0)}`,
+          `${has_predators ? "prey" : "alive"} ${with_separators((live.alive_count ?? 0) - predators)}` +
+            (has_births || has_predators ? "" : ` of ${with_separators(live.organism_count ?? 0)}`),
+          ...(has_predators ? [`predators ${with_separators(predators)}`] : []),
+          ...(has_births ? [`born ${with_separators(live.born_count ?? 0)}`] : []),
           `mean health ${(live.health_mean ?? 0).toFixed(1)}`,
           `food eaten ${with_separators(live.food_eaten ?? 0)}`,
           `poison eaten ${with_separators(live.poison_eaten ?? 0)}`,

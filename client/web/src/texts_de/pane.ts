@@ -24,7 +24,8 @@ export const pane_texts: typeof english.pane_texts = {
   waiting: "Warten auf die erste Momentaufnahme …",
   world: "Welt",
   world_named: (name, is_replay) => `Welt ${name}${is_replay ? ", Wiedergabe" : ""}`,
-  generation: (generation) => `Generation ${with_separators(generation)}`,
+  generation: (generation, has_births) =>
+    `${has_births ? "Intervall" : "Generation"} ${with_separators(generation)}`,
   replay_of: (world) => `WIEDERGABE von ${world}`,
   a_file: "eine Datei",
   not_connected: "nicht verbunden",

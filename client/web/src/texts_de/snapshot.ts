@@ -9,13 +9,16 @@ export const place_and_speed_text: typeof english.place_and_speed_text = (name, 
   ` · ${speed_text(speed)}` +
   (running && snapshot.ticks_per_s > 0 ? ` (${with_separators(snapshot.ticks_per_s)} Ticks/s)` : "");
 
-export const statistics_texts: typeof english.statistics_texts = (snapshot, has_bodies) => {
-  const live = snapshot.live;
+export const statistics_texts: typeof english.statistics_texts = (snapshot, has_bodies, has_births, has_predators) => {
+  const live = snapshot.live, predators = has_predators ? live?.predator_count ?? 0 : 0;
   return [
     ...(
       live && has_bodies ?
         [
-          `am Leben ${with_separators(live.alive_count ?? 0)} von ${with_separators(live.organism_count ?? 0)}`,
+          `${has_predators ? "Beute" : "am Leben"} ${with_separators((live.alive_count ?? 0) - predators)}` +
+            (has_births || has_predators ? "" : ` von ${with_separators(live.organism_count ?? 0)}`),
+          ...(has_predators ? [`Räuber ${with_separators(predators)}`] : []),
+          ...(has_births ? [`geboren ${with_separators(live.born_count ?? 0)}`] : []),
           `mittlere Gesundheit ${tenths(live.health_mean ?? 0)}`,
           `Futter gefressen ${with_separators(live.food_eaten ?? 0)}`,
           `Gift gefressen ${with_separators(live.poison_eaten ?? 0)}`,
