@@ -174,7 +174,7 @@ function vivid(of: IslandColours, shadow: number): Styles {
       fill: of.predator_high,
       edge: of.predator_edge,
       fill_low: of.predator_low,
-      edge_pixels: 1.5,
+      edge_pixels: 1,
       half_pixels_min: 1.5
     }),
     organism_dot: style("circle", {fill: of.body, half_pixels_min: 1.1}),
