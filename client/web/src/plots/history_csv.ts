@@ -46,12 +46,12 @@ export function history_csv(history: readonly GenerationStatistics[], gene_names
   const of_both = [...of_genes(gene_parts), ...of_genes(account_parts)], own = number_columns.slice(common_columns);
   const has_colony = history.some((one) => one.colony !== undefined);
   const has_predators = history.some((one) => one.predators !== undefined);
-  const of_species = (one: GenerationStatistics|undefined): (string|number)[] => {
-    const genes = gene_names.map((_, i) => one?.genes?.[i]);
+  const of_species = (one: GenerationStatistics): (string|number)[] => {
+    const genes = gene_names.map((_, i) => one.genes?.[i]);
     return [
-      ...own.map((name) => one?.[name] ?? 0), ...genes.flatMap((gene) => gene_parts.map((part) => gene?.[part] ?? 0)),
+      ...own.map((name) => one[name] ?? 0), ...genes.flatMap((gene) => gene_parts.map((part) => gene?.[part] ?? 0)),
       ...genes.flatMap((gene) => account_parts.map((part) => (gene?.account ? gene.account[part] ?? 0 : ""))),
-      ...(has_colony ? colony_parts.map((part) => one?.colony?.[part] ?? 0) : [])
+      ...(has_colony ? colony_parts.map((part) => (one.colony ? one.colony[part] ?? 0 : "")) : [])
     ];
   };
   const columns = [...own, ...of_both, ...(has_colony ? colony_parts : [])];
@@ -59,7 +59,7 @@ export function history_csv(history: readonly GenerationStatistics[], gene_names
   const common = number_columns.slice(0, common_columns);
   const lines = [csv_line([...common, ...columns, ...twins])];
   for (const one of history) {
-    const predators = has_predators ? of_species(one.predators) : [];
+    const predators = one.predators ? of_species(one.predators) : twins.map(() => "");
     lines.push(csv_line([...common.map((name) => one[name] ?? 0), ...of_species(one), ...predators]));
   }
   return `${lines.join("\n")}\n`;
