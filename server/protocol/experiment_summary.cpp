@@ -62,6 +62,9 @@ std::string choice_of(std::string_view name, const Parameters& parameters) {
 }
 
 std::string about_fitness(const Parameters& p) {
+    if (parameters::has_births(p)) {
+        return "is the number of children";
+    }
     const std::string fitness = choice_of("fitness", p);
     if (fitness == "external") {
         return "comes from a client at the end of each generation";
@@ -109,6 +112,15 @@ std::string about_meals(const Parameters& p) {
     return text;
 }
 
+/// "From generation 10 on, 20 predators hunt them. "; empty if there are none.
+std::string about_predators(const Parameters& p) {
+    if (p.predator_count == 0) {
+        return "";
+    }
+    const std::string from = p.predator_from > 1 ? "From generation " + shown(p.predator_from) + " on, " : "";
+    return from + counted(p.predator_count, "predator hunts", "predators hunt") + " them. ";
+}
+
 /// The life of organisms with bodies.
 std::string about_life(const Parameters& p) {
     const bool has_networks = p.controller == evolution::Controller::Network, has_costs = has_gene_costs(p);
@@ -116,10 +128,12 @@ std::string about_life(const Parameters& p) {
     if (!has_networks && p.steering_lookahead_s == 0) {
         text += "They orbit their food, because they do not steer ahead. ";
     }
-    return text + (p.health_loss_per_s == 0 && !has_costs
-                       ? "They lose no health over time. "
-                       : "Each loses " + shown(p.health_loss_per_s) + " health per second" +
-                             (has_costs ? ", more or less with its genes," : "") + " and dies at 0. ");
+    return text +
+           (p.health_loss_per_s == 0 && !has_costs
+                ? "They lose no health over time. "
+                : "Each loses " + shown(p.health_loss_per_s) + " health per second" +
+                      (has_costs ? ", more or less with its genes," : "") + " and dies at 0. ") +
+           about_predators(p);
 }
 
 /// What islands exchange; empty for one island.
@@ -140,6 +154,16 @@ std::string about_migration(const Parameters& p) {
            (p.migration == evolution::Topology::Ring             ? " to the next island. "
             : p.migration == evolution::Topology::FullyConnected ? " to every other island. "
                                                                  : " to a random other island. ");
+}
+
+/// How organisms come into a world with births.
+std::string about_births(const Parameters& p) {
+    return " There are no generations: " +
+           std::string{p.births == parameters::Births::Sexual ? "two organisms" : "an organism"} + " with at least " +
+           shown(p.birth_health) +
+           (p.births == parameters::Births::Sexual ? " health have a child" : " health has a child") + " and pay" +
+           (p.births == parameters::Births::Sexual ? "" : "s") + " for it with health." +
+           (p.generation_limit == 0 ? "" : " The run ends after interval " + shown(p.generation_limit) + ".");
 }
 
 /// How a generation replaces the previous one, where that differs from the default, and when the run ends.
@@ -173,8 +197,9 @@ std::string experiment_summary(const Parameters& p) {
            (p.free_genes == 0 ? ""
                               : "Each has " + counted(p.free_genes, "free gene", "free genes") +
                                     (has_bodies ? ", which its body does not use. " : ". ")) +
-           about_migration(p) + "Fitness " + about_fitness(p) + ". " + about_selection(p, choice_of("selection", p)) +
-           about_generations(p);
+           about_migration(p) + "Fitness " + about_fitness(p) + "." +
+           (parameters::has_births(p) ? about_births(p)
+                                      : " " + about_selection(p, choice_of("selection", p)) + about_generations(p));
 }
 
 std::string schedule_summary(const parameters::Schedule& schedule, std::uint64_t after_generation) {

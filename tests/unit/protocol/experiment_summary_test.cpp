@@ -43,6 +43,18 @@ TEST(ExperimentSummary, LeavesOutWhatTheExperimentLacks) {
                 StartsWith("12,000 organisms seek food (+25 health). They lose no health over time. Fitness is"));
 }
 
+TEST(ExperimentSummary, SaysHowAColonyLives) {
+    Parameters parameters;
+    parameters.reproduction = parameters::Reproduction::Births;
+    parameters.predator_count = 20;
+    parameters.predator_from = 10;
+    EXPECT_THAT(
+        experiment_summary(parameters),
+        testing::EndsWith("and dies at 0. From generation 10 on, 20 predators hunt them. Fitness is the number of "
+                          "children. There are no generations: two organisms with at least 120 health have a "
+                          "child and pay for it with health."));
+}
+
 /// The sentence about fitness with these weights of seconds, health, food and poison.
 std::string about_fitness(double second, double health, double food, double poison) {
     Parameters parameters;

@@ -138,3 +138,12 @@ test("the summary of a world is German", () => {
                "Die Fitness ist die gelebte Zeit minus 2 × das gefressene Gift. Im Mittel haben fittere Organismen mehr Nachkommen. " +
                "Parameter ändern sich in Generation 5 und 9.");
 });
+
+test("the summary of a colony is German", () => {
+  const value = { reproduction: { choice: "births" }, births: { choice: "sexual" }, fitness: { choice: "life" }, birth_health: { real: 120 }, predator_count: { count: 20 },
+                  predator_from: { count: 10 }, health_loss_per_s: { real: 6 } };
+  const set = { summary: "…", parameters: Object.entries(value).map(([name, value]) => ({ name, value })) };
+  const text = page.experiment_text(set);
+  assert.match(text, /stirbt bei 0\. Ab Generation 10 jagen sie 20 Räuber\. Die Fitness ist die Zahl der Kinder\. /);
+  assert.match(text, /Es gibt keine Generationen: zwei Organismen mit mindestens 120 Gesundheit bekommen ein Kind und bezahlen es mit Gesundheit\.$/);
+});

@@ -38,8 +38,7 @@ export const experiment_text: typeof english.experiment_text = (set) => {
       "",
     islands > 1 ? migration(read) : "",
     `Die Fitness ${fitness_of(read, fitness)}.`,
-    selection(read),
-    generations(read),
+    ...(read.choice("reproduction") === "births" ? [births(read)] : [selection(read), generations(read)]),
     schedule(set),
   ].filter((sentence) => sentence !== "")
     .join(" ");
@@ -63,7 +62,24 @@ function life(read: Read): string {
        "." :
        ` und ${always && !has_networks ? "fliehen immer vor Gift" : "meiden Gift"} (−${poison}).`) +
     (loss === 0 ? " Mit der Zeit verlieren sie keine Gesundheit." :
-                  ` Jeder verliert ${shown_number(loss)} Gesundheit pro Sekunde und stirbt bei 0.`);
+                  ` Jeder verliert ${shown_number(loss)} Gesundheit pro Sekunde und stirbt bei 0.`) +
+    predators(read);
+}
+
+function predators(read: Read): string {
+  const count = read.number("predator_count"), from = read.number("predator_from");
+  const when = from > 1 ? `Ab Generation ${with_separators(from)} ` : "";
+  const verb = count === 1 ? "jagt" : "jagen", who = `${with_separators(count)} Räuber`;
+  return count === 0 ? "" : ` ${when === "" ? `${who} ${verb} sie.` : `${when}${verb} sie ${who}.`}`;
+}
+
+function births(read: Read): string {
+  const who = read.choice("births") === "sexual" ? "zwei Organismen" : "ein Organismus";
+  const verb = read.choice("births") === "sexual" ? "bekommen ein Kind und bezahlen" : "bekommt ein Kind und bezahlt";
+  const limit = read.number("generation_limit");
+  return `Es gibt keine Generationen: ${who} mit mindestens ${shown_number(read.number("birth_health"))} Gesundheit ${
+           verb} es mit Gesundheit.` +
+    (limit === 0 ? "" : ` Der Lauf endet nach Intervall ${with_separators(limit)}.`);
 }
 
 function migration(read: Read): string {
@@ -81,6 +97,9 @@ function migration(read: Read): string {
 }
 
 function fitness_of(read: Read, fitness: string): string {
+  if (read.choice("reproduction") === "births") {
+    return "ist die Zahl der Kinder";
+  }
   if (fitness === "external") {
     return "kommt am Ende jeder Generation von einem Programm";
   }
