@@ -135,7 +135,7 @@ function entries_of(world: ViewedWorld): {title: string; entries: Entry[]} {
       add("arrow", colours.wanders, texts.networks);
     } else {
       add("arrow", colours.seeks, texts.seeks);
-      add("arrow", colours.flees, texts.flees);
+      add("arrow", colours.flees, drawing.predators ? texts.flees_both : texts.flees);
       add("arrow", colours.wanders, texts.wanders);
     }
   }

@@ -21,5 +21,6 @@ export const island_legend_texts = {
   networks: "steered by its network; an arrow of 30 px is 100 kg px/s²",
   seeks: "seeks food",
   flees: "flees from poison",
+  flees_both: "flees from poison or a predator",
   wanders: "wanders; an arrow of 30 px is 100 kg px/s²",
 };

@@ -20,6 +20,7 @@ export const island_legend_texts: typeof english.island_legend_texts = {
   poison_radius: "Sichtweite für Gift",
   networks: "vom Netz gesteuert; ein Pfeil von 30 px ist 100 kg px/s²",
   seeks: "sucht Futter",
+  flees_both: "flieht vor Gift oder einem Räuber",
   flees: "flieht vor Gift",
   wanders: "streift umher; ein Pfeil von 30 px ist 100 kg px/s²",
 };
