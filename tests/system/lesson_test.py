@@ -33,8 +33,8 @@ def without_texts(value, inside=""):
 
 
 class Files(unittest.TestCase):
-    def test_there_are_eight(self):
-        self.assertEqual(len(ENGLISH), 8)
+    def test_there_are_nine(self):
+        self.assertEqual(len(ENGLISH), 9)
 
     def test_each_has_a_german_twin(self):
         self.assertEqual([path.name for path in ENGLISH], sorted(path.name for path in (LESSONS / "de").iterdir()))
