@@ -213,8 +213,7 @@ TEST_P(StoredColonyTest, GenerationsThatAreNotRetainedAreSimulated) {
         run->recorder().close_all(run->laboratory());
     }
     const auto file = file_left();
-    expect_agrees(*file);
-    ASSERT_TRUE(file->pin_snapshot());
+    expect_agrees(*file); // pins a snapshot
     EXPECT_EQ(file->database().number("SELECT count(*) FROM interval WHERE generation = 3"), 0);
     const auto lines = lines_of(*file, {.table = has_births() ? RunTable::Births : RunTable::Lineage});
     EXPECT_GT(lines.size(), 24u);
@@ -229,7 +228,8 @@ TEST_P(StoredColonyTest, BreedingIsThatOfThePrey) {
     const auto file = file_left();
     ASSERT_TRUE(file->pin_snapshot());
     for (const std::uint64_t generation : {1u, 2u, 4u}) {
-        const auto bred = breeding_of(*file, {.generation = generation, .island = 1, .rows = {}}, executor, {});
+        const auto bred =
+            breeding_of(*file, {.generation = generation, .island = 1, .rows = {.count_max = 12}}, executor, {});
         ASSERT_EQ(bred.has_value(), !has_births()) << (bred ? "" : to_text(bred.error()));
         if (bred) {
             EXPECT_EQ(bred->record.contender_count, 12u);
