@@ -24,7 +24,7 @@ export const new_world_texts: typeof english.new_world_texts = {
       "nächsten.",
     predators:
       "Beute und Räuber ohne Generationen: Räuber kommen in Abschnitt 10, fressen Beute und streifen nach jeder " +
-      "Mahlzeit 5,5 Sekunden umher. Die Beute flieht vor ihnen. Kinder beider Arten haben einen Elternteil.",
+      "Mahlzeit sechs Sekunden umher. Die Beute flieht vor ihnen. Kinder beider Arten haben einen Elternteil.",
     rooy:
       "Netze mit einem Eingang steuern auf Futter zu, wie in N. Rooys „Evolving Simple Organisms“ (2017), hier mit " +
       "Wänden fern vom Futter; der nächste Organismus erhält das Stück.",
