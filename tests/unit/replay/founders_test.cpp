@@ -52,9 +52,9 @@ TEST_F(FoundersTest, FoundersFollowTheFirstParents) {
             each_generation(**file, executor, {}, [&](std::uint64_t generation, const auto& families) {
                 simulation::Founders next(families.size());
                 for (std::uint32_t i = 0; i < families.size(); ++i) {
-                    for (std::uint32_t organism = 0; organism < families[i].organism_count; ++organism) {
-                        const bool initial = families[i].initial;
-                        next[i].push_back(initial ? i * families[i].organism_count + organism
+                    for (std::uint32_t organism = 0; organism < families[i].origins.organism_count(); ++organism) {
+                        const bool initial = families[i].origins.initial;
+                        next[i].push_back(initial ? i * families[i].origins.organism_count() + organism
                                                   : led_to[families[i].parents[organism][0].island]
                                                           [families[i].parents[organism][0].organism]);
                     }
