@@ -54,9 +54,10 @@ TEST_F(FoundersTest, FoundersFollowTheFirstParents) {
                 for (std::uint32_t i = 0; i < families.size(); ++i) {
                     for (std::uint32_t organism = 0; organism < families[i].origins.organism_count(); ++organism) {
                         const bool initial = families[i].origins.initial;
-                        next[i].push_back(initial ? i * families[i].origins.organism_count() + organism
-                                                  : led_to[families[i].parents[organism][0].island]
-                                                          [families[i].parents[organism][0].organism]);
+                        next[i].push_back(
+                            initial ? i * static_cast<std::uint32_t>(families[i].origins.organism_count()) + organism
+                                    : led_to[families[i].parents[organism][0].island]
+                                            [families[i].parents[organism][0].organism]);
                     }
                 }
                 led_to = std::move(next);
