@@ -54,8 +54,8 @@ TEST(ColonyReport, ATableHasTheRunsThatPersisted) {
     const std::vector<std::vector<Course>> courses{
         {course_of(4), course_of(4)}, {course_of(4), course_of(2)}, {course_of(2), course_of(3)}};
     const std::string text = persistence_table(plan, courses);
-    EXPECT_THAT(text, HasSubstr("\nworld                2 of 2        4.0  9.5 (0.0) 8            3.0 (0.0) 2"));
-    EXPECT_THAT(text, HasSubstr("\nmutation_off         1 of 2        3.0  "));
+    EXPECT_THAT(text, HasSubstr("\nworld                  2 of 2        4.0  9.5 (0.0) 8            3.0 (0.0) 2"));
+    EXPECT_THAT(text, HasSubstr("\nmutation_off           1 of 2        3.0  "));
     EXPECT_THAT(text, HasSubstr("\nunselected_parents     0 of 2        2.5  "));
     EXPECT_THAT(text, HasSubstr("shuffle_births=true\n"));
 }
