@@ -18,7 +18,7 @@ namespace {
 using namespace recording;
 using namespace replay;
 
-constexpr std::int64_t bytes_max = 300 << 10;
+constexpr std::int64_t bytes_max = 360 << 10;
 
 /// A hundred generations in a file with room for some thirty whole ones.
 class RetentionTest : public testing::Test {
