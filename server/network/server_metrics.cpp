@@ -69,7 +69,8 @@ void add_queues(v1::Metrics& to, const base::Quota& mailbox, const runtime::Outb
 }
 
 void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max) {
-    std::map<std::string, std::uint64_t> by_role{{"admin", 0}, {"controller", 0}, {"viewer", 0}, {"none", 0}};
+    std::map<std::string, std::uint64_t> by_role{
+        {"admin", 0}, {"controller", 0}, {"teacher", 0}, {"viewer", 0}, {"none", 0}};
     std::uint64_t snapshots = 0, events = 0;
     for (const auto& [session_number, session] : all) {
         ++by_role[session->greeted() ? access::name_of(session->user().role) : "none"];

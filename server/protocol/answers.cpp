@@ -35,7 +35,7 @@ std::optional<parameters::RequestedParameters> requested_by(const std::string& r
     return std::nullopt;
 }
 
-/// Above this number of organisms, a tick takes so long that answers can take more than 0.1 s on a machine of two cores,
+/// Above this number of organisms, a tick takes so long that answers can take more than 0.1 s on two cores,
 /// because nothing interrupts a tick (tests/bench/class_cost.py).
 constexpr std::uint64_t organisms_undisturbing_max = 500'000;
 

@@ -92,8 +92,12 @@ void write_organism(Table& table, const codec::GeneTexts& texts, const evolution
             .number(alive ? ended->statistics.simulated_s - (organism < bred ? 0 : placed[organism - bred] * tick_s)
                           : outcome.lived_ticks[organism] * tick_s)
             .text(run_file::name_of(outcome.cause[organism]));
-        for (std::size_t objective = 1; objective < objectives; ++objective) {
-            table.number(outcome.objectives[organism * objectives + objective]);
+        for (std::uint32_t objective = 1; objective < parameters.objectives; ++objective) {
+            if (objectives > objective) {
+                table.number(outcome.objectives[organism * objectives + objective]);
+            } else { // the world computes its fitness itself
+                table.nothing();
+            }
         }
     } else {
         table.nothing().nothing().nothing();

@@ -67,6 +67,7 @@ class WatchedServer {
     std::size_t connection_count_ = 0;
     network::SessionHost host_{limit_counters_, send_memory_};
     network::Streams streams_;
+    classes::Registry classes_;
     network::Dispatcher dispatcher_;
     runtime::SimulationLoop loop_;
     runtime::ReplayLoop replays_; // without runs it has no replays

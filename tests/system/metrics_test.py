@@ -284,7 +284,7 @@ class Clients(Case, access.Access):
                 return self.wait(server, lambda m: m("evod_sessions", role="none") == 1, "one who says nothing")
         metrics = waiting.quicker_than(came[0].welcome.limits.hello_timeout_s, stay_silent)
         self.assertEqual({role: metrics("evod_sessions", role=role) for role in secrets},
-                         {"viewer": 2, "controller": 1, "admin": 1})
+                         {"viewer": 2, "teacher": 0, "controller": 1, "admin": 1})
         self.assertEqual(metrics("evod_logins_failed_total"), 0)
         self.come(server, "evod_" + "0" * 64, come_from="127.0.0.2")
         self.come(server, come_from="127.0.0.3")  # a missing token is not a failed login

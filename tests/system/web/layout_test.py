@@ -107,6 +107,7 @@ class Layout(Case):
             browser.run("evod.app.world().set_look({ trails: false, flashes: false })")
             shown = browser.columns()["organisms"]
             _, _, width, height = browser.canvas()
+            browser.wait("evod.app.panes.focused.pane.view.shown() !== null", "the camera")
             camera = browser.value("evod.app.panes.focused.pane.view.shown()")
             pixels = browser.pixels().astype(int)
             seen = 0
