@@ -4,6 +4,7 @@ EVOD names the program, MESSAGES the folder of the message classes; PAUSE_S is f
 seconds, and where SANITIZED is set memory is not judged: a sanitizer keeps what has been freed. Each test lets
 tests/system/attacker.py, a process of its own, at a server for a bounded time.
 """
+import itertools
 import math
 import os
 import pathlib
@@ -76,7 +77,14 @@ class Attacked(unittest.TestCase):
                 for step in range(1, STEPS + 1):
                     stepped = self.honest(viewer, control, step * STEP_TICKS)
                 self.assertEqual(stepped.state_hash, self.hash)
-                plain.until(lambda: enough(attack.counts()), f"enough of {kind}", pause_s=0.1)
+                further_steps = itertools.count(STEPS + 1)
+
+                def is_enough():
+                    if enough(attack.counts()):
+                        return True
+                    self.honest(viewer, control, next(further_steps) * STEP_TICKS)  # attackers still get snapshots
+                    return False
+                plain.until(is_enough, f"enough of {kind}")
                 became = attack.end()
             plain.until(lambda: self.memory_bytes() <= before + memory_back_bytes, "memory comes back")
             control.call(delete_world=c.DeleteWorld(world="w"))

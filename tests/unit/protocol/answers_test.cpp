@@ -43,7 +43,7 @@ TEST_F(Answers, WarnAboutAWorldThatSlowsThoseOfClasses) {
         false,
         {}}));
     const simulation::Command run = simulation::Run{"w", {}};
-    EXPECT_EQ(answer_to(run, "run").warnings_size(), 0) << "there is no class";
+    EXPECT_EQ(answer_to(run, "run").warnings_size(), 0) << "the server has no classes";
     simulation::CreateWorld of_member{"bio_ann", {}, {}, {}};
     of_member.ownership = {.user = "bio/ann", .class_name = "bio", .teacher = "kant"};
     ASSERT_TRUE(laboratory.apply(of_member));
