@@ -287,12 +287,7 @@ std::uint32_t Island::place(std::span<const NewOrganism> organisms, const parame
         hash_ += hash_of_birth(id);
         hash_ += hash_of_organism(bodies_, living_, body_of_[id]);
     }
-    perception_.begin(bodies_, living_, food_, poison_);
-    for (std::size_t body = 0; body < bodies_.size(); ++body) {
-        if (bodies_.is_void(body)) {
-            perception_.remove(body); // begin() expects living organisms only
-        }
-    }
+    perception_.append(bodies_, living_, food_, poison_, bodies_.size() - organisms.size());
     stepper_.near().invalidate();
     return first;
 }

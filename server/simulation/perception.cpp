@@ -47,20 +47,34 @@ float safely_below(float distance) {
 } // namespace
 
 void Perception::begin(const Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison) {
-    EVOD_ASSERT(living.health.size() == bodies.x.size());
-    x_ = bodies.x;
-    y_ = bodies.y;
-    begin(food_, bodies, living.food_radius, food);
-    begin(poison_, bodies, living.poison_radius, poison);
+    for (View* view : {&food_, &poison_}) {
+        view->others.clear();
+        view->x.clear();
+        view->y.clear();
+        view->search_radius_max = 0;
+    }
+    append(bodies, living, food, poison, 0);
 }
 
-void Perception::begin(View& view, const Circles& bodies, const base::Column<float>& radius, const Items& items) {
-    view.others.assign(bodies.x.size(), never);
-    std::fill_n(view.others.begin(), bodies.size(), needs_search);
-    view.x.assign(bodies.x.size(), far_from_void);
-    view.y.assign(bodies.x.size(), far_from_void);
-    view.search_radius_max = 0;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+void Perception::append(const Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison,
+                        std::size_t first) {
+    EVOD_ASSERT(living.health.size() == bodies.x.size());
+    x_.resize(bodies.x.size());
+    y_.resize(bodies.y.size());
+    const auto from = static_cast<std::ptrdiff_t>(first);
+    std::copy(bodies.x.begin() + from, bodies.x.end(), x_.begin() + from);
+    std::copy(bodies.y.begin() + from, bodies.y.end(), y_.begin() + from);
+    append(food_, bodies, living.food_radius, food, first);
+    append(poison_, bodies, living.poison_radius, poison, first);
+}
+
+void Perception::append(View& view, const Circles& bodies, const base::Column<float>& radius, const Items& items,
+                        std::size_t first) {
+    view.others.resize(bodies.x.size(), never);
+    view.x.resize(bodies.x.size(), far_from_void);
+    view.y.resize(bodies.x.size(), far_from_void);
+    for (std::size_t i = first; i < bodies.size(); ++i) {
+        view.others[i] = needs_search;
         view.search_radius_max =
             std::max(view.search_radius_max, search_radius(radius[i], bodies.radius[i], items.radius_px()));
     }

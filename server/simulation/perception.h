@@ -28,6 +28,9 @@ class Perception {
   public:
     /// Marks every view as stale.
     void begin(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison);
+    /// Adds the bodies from `first` on, with stale views.
+    void append(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison,
+                std::size_t first);
 
     /// Searches for the bodies of [begin, end) whose views are stale. Ranges may be searched in parallel.
     void search(const physics::Circles& bodies, const LivingOrganisms& living, const Items& food, const Items& poison,
@@ -56,8 +59,8 @@ class Perception {
         float search_radius_max = 0; // px
     };
 
-    static void begin(View& view, const physics::Circles& bodies, const base::Column<float>& radius,
-                      const Items& items);
+    static void append(View& view, const physics::Circles& bodies, const base::Column<float>& radius,
+                       const Items& items, std::size_t first);
     /// The stale views of a block, and their queries.
     struct Searches {
         std::uint32_t indices[physics::circles_per_block];

@@ -168,6 +168,51 @@ const std::vector<Scenario>& all() {
          base::Seed{56},
          600,
          {}},
+
+        {"sexual_births", // births, old age, migrants and changes of the rules
+         R"({"reproduction": "births", "island_count": 2, "population_size": 60, "food_count": 120, "respawn_s": 1,
+             "generation_s": 2, "birth_health": 90, "birth_cost": 5, "mate_px": 150, "lifespan_s": 3,
+             "population_max": 90, "crate_count": 3, "migration": "ring", "migration_epoch": 1, "migrant_count": 2,
+             "scale_chance": 0.3, "crossover": "blend"})",
+         base::Seed{60},
+         900,
+         {{200, R"({"birth_every_s": 0.1, "population_max": 40, "mate_px": 400})"},
+          {500, R"({"births": "asexual", "health_cap_per_size": 2.5, "body_size_cost": 0.3, "birth_health": 120})"}}},
+
+        {"predators_and_prey", // with births; they arrive late, and two islands exchange them
+         R"({"reproduction": "births", "births": "asexual", "island_count": 2, "population_size": 80, "food_count": 150,
+             "respawn_s": 1, "generation_s": 2, "birth_health": 110, "birth_cost": 5, "lifespan_s": 8,
+             "predator_count": 12, "predator_from": 2, "handling_s": 0.5, "prey_health": 40,
+             "predator_birth_health": 130, "predator_births": "sexual", "predator_mate_px": 500,
+             "migration": "ring", "migration_epoch": 2})",
+         base::Seed{61},
+         900,
+         {{300, R"({"predator_births": "asexual", "predator_lifespan_s": 4, "handling_s": 1})"},
+          {600, R"({"shuffle_births": false, "flee_certain_impulse": 50})"}}},
+
+        {"predators_with_generations", // both species are bred, each with its own operators
+         R"({"island_count": 2, "population_size": 50, "predator_count": 10, "predator_from": 2, "generation_s": 3,
+             "handling_s": 0.5, "predator_selection": "tournament", "predator_elite_count": 1,
+             "predator_mutation_chance": 0.5, "selection": "truncation", "migration": "ring", "migration_epoch": 1})",
+         base::Seed{62},
+         900,
+         {}},
+
+        {"births_of_unselected_parents", // of networks, which predators hunt
+         R"({"reproduction": "births", "controller": "network", "population_size": 120, "food_count": 150,
+             "generation_s": 2, "birth_health": 80, "birth_cost": 0, "mate_px": 200, "shuffle_births": true,
+             "predator_count": 10, "handling_s": 0.4})",
+         base::Seed{63},
+         480,
+         {}},
+
+        {"colony_of_thousands", // every loop is cut into several pieces
+         R"({"reproduction": "births", "births": "asexual", "population_size": 5000, "scale_with_population": true,
+             "reference_population": 50, "generation_s": 1, "birth_health": 100, "birth_cost": 0, "lifespan_s": 2,
+             "predator_count": 600, "handling_s": 0.3, "health_loss_per_s": 20})",
+         base::Seed{64},
+         150,
+         {}},
     };
     return scenarios;
 }
