@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <tuple>
@@ -36,6 +37,11 @@ const std::map<std::string, std::string> golden_hashes = {
     {"crowded_migration", "786103d0bfe4f8d3042345471872260d"},
     {"newtonian_networks", "d1c1626c62a64f926065300db1f00841"},
     {"kinematic_networks", "18b6c4aa2ddd3278ab0454fdb6f6c08e"},
+    {"sexual_births", "c15efbe4c1fa93199f9bed82f12f419c"},
+    {"predators_and_prey", "2264497befe03a0ab74b7ebbbde7d7f1"},
+    {"predators_with_generations", "299f78cec5bc093f1f081a43bfd35e30"},
+    {"births_of_unselected_parents", "3651c413a6113e8f0970a470f7ca0b4e"},
+    {"colony_of_thousands", "99be289c418fa90988a699663654d222"},
 };
 
 /// A scenario with a set of vector instructions.
@@ -75,6 +81,16 @@ TEST(GoldenHashes, AreKnownForEveryScenarioAndNoOther) {
 TEST(TheScenarios, UseTheFeaturesTheyAreNamedAfter) {
     base::InlineExecutor executor;
     std::uint64_t limited = 0, deaths = 0, poisoned = 0, clamped = 0, generations = 0, extinct = 0;
+    simulation::ColonyStatistics prey, predators;
+    const auto add = [](simulation::ColonyStatistics& sum, const simulation::GenerationStatistics& s) {
+        if (s.colony) {
+            sum.born_count += s.colony->born_count;
+            sum.refused_count += s.colony->refused_count;
+            sum.without_room_count += s.colony->without_room_count;
+            sum.eaten_count += s.colony->eaten_count;
+            sum.old_count += s.colony->old_count;
+        }
+    };
     for (const Scenario& scenario : all()) {
         Play run{scenario};
         for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
@@ -88,6 +104,8 @@ TEST(TheScenarios, UseTheFeaturesTheyAreNamedAfter) {
                 clamped += s.clamp_count;
                 extinct += s.alive_count == 0;
                 ++generations;
+                add(prey, s);
+                std::ranges::for_each(s.predators, [&](const auto& p) { add(predators, p); });
             }
         }
         EXPECT_GE(run.world().moment().generation, 2u) << scenario.name;
@@ -98,6 +116,13 @@ TEST(TheScenarios, UseTheFeaturesTheyAreNamedAfter) {
     EXPECT_GT(clamped, 0u);
     EXPECT_GT(extinct, 2u);
     EXPECT_GT(generations, 100u);
+    EXPECT_GT(prey.born_count, 1000u);
+    EXPECT_GT(prey.refused_count, 0u);
+    EXPECT_GT(prey.without_room_count, 0u);
+    EXPECT_GT(prey.eaten_count, 100u);
+    EXPECT_GT(prey.old_count, 100u);
+    EXPECT_GT(predators.born_count, 100u);
+    EXPECT_GT(predators.old_count, 10u);
 }
 
 } // namespace
