@@ -182,13 +182,13 @@ void for_each_few(FewOrganisms& few, const physics::Circles& bodies, const Livin
         few.food.search(food, count);
         few.poison.search(poison, count);
         for (std::size_t k = 0; hunt != nullptr && k < count; ++k) {
-            Sight sight{few.food.x[k], few.food.y[k], few.poison.x[k], few.poison.y[k], 0};
-            hunt->look(bodies, living, bodies_asked[begin + k], tick, sight);
-            few.food.x[k] = sight.food_x;
-            few.food.y[k] = sight.food_y;
-            few.poison.x[k] = sight.threat_x;
-            few.poison.y[k] = sight.threat_y;
-            few.is_hunted[k] = sight.is_hunted;
+            SeenPlaces seen{few.food.x[k], few.food.y[k], few.poison.x[k], few.poison.y[k], 0};
+            hunt->look(bodies, living, bodies_asked[begin + k], tick, seen);
+            few.food.x[k] = seen.food_x;
+            few.food.y[k] = seen.food_y;
+            few.poison.x[k] = seen.threat_x;
+            few.poison.y[k] = seen.threat_y;
+            few.is_hunted[k] = seen.is_hunted;
         }
         predict(begin, count);
     }

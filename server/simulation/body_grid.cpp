@@ -7,9 +7,9 @@ void BodyGrid::build(const physics::Circles& circles, std::span<const std::uint3
     constexpr double members_per_cell = 2, side_min_px = 16;
     const double per_cell = static_cast<double>(area.width) * area.height /
                             std::max(static_cast<double>(members.size()) / members_per_cell, 1.0);
-    side_ = static_cast<std::int64_t>(std::max(std::sqrt(per_cell), side_min_px * physics::units_per_px));
-    columns_ = static_cast<std::uint32_t>(area.width / side_ + 1);
-    rows_ = static_cast<std::uint32_t>(area.height / side_ + 1);
+    cells_per_unit_ = 1 / std::max(std::sqrt(per_cell), side_min_px * physics::units_per_px);
+    columns_ = static_cast<std::uint32_t>(area.width * cells_per_unit_) + 1;
+    rows_ = static_cast<std::uint32_t>(area.height * cells_per_unit_) + 1;
     starts_.assign(std::size_t{columns_} * rows_ + 1, 0);
     const auto cell_of = [&](std::uint32_t i) { return row_at(circles.y[i]) * columns_ + column_at(circles.x[i]); };
     for (const std::uint32_t i : members) {

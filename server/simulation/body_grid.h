@@ -35,7 +35,7 @@ class BodyGrid {
                           const IsWanted& is_wanted) const {
         std::uint32_t best = none;
         float best_square = reach * reach;
-        const auto units = static_cast<std::int64_t>(reach * static_cast<float>(physics::units_per_px)) + 1;
+        const double units = static_cast<double>(reach) * physics::units_per_px + 1;
         const std::uint32_t left = column_at(x - units), right = column_at(x + units), bottom = row_at(y + units);
         for (std::uint32_t row = row_at(y - units); !empty() && row <= bottom; ++row) {
             const std::uint32_t end = starts_[row * columns_ + right + 1];
@@ -55,13 +55,13 @@ class BodyGrid {
     }
 
   private:
-    std::uint32_t column_at(std::int64_t x) const { return at(x, columns_); }
-    std::uint32_t row_at(std::int64_t y) const { return at(y, rows_); }
-    std::uint32_t at(std::int64_t position, std::uint32_t count) const {
-        return static_cast<std::uint32_t>(std::clamp<std::int64_t>(position / side_, 0, count - 1));
+    std::uint32_t column_at(double x) const { return at(x, columns_); }
+    std::uint32_t row_at(double y) const { return at(y, rows_); }
+    std::uint32_t at(double position, std::uint32_t count) const {
+        return static_cast<std::uint32_t>(std::clamp(position * cells_per_unit_, 0.0, count - 1.0));
     }
 
-    std::int64_t side_ = 1; // of a cell, units
+    double cells_per_unit_ = 1; // along each axis
     std::uint32_t columns_ = 1, rows_ = 1;
     std::vector<std::uint32_t> starts_; // per cell, row by row: where its members begin in sorted_; and the end
     std::vector<std::uint32_t> sorted_;

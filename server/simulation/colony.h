@@ -1,4 +1,4 @@
-// Colony: a world with births or with two species, and what an island of it hands over from one generation to the next.
+// Colony: a world with births or with two species, and what an island hands over from one generation to the next.
 //
 // With births, a generation is an interval: nothing happens to the organisms when it ends. The living keep their places,
 // health and ages, and get new ids: first the prey, then the predators, each in the order of their numbers. An organism

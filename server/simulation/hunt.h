@@ -24,7 +24,7 @@
 namespace evod::simulation {
 
 /// What an organism sees: the positions of its food and of its threat; void_position if there is none.
-struct Sight {
+struct SeenPlaces {
     physics::Coordinate food_x, food_y, threat_x, threat_y;
     std::int32_t is_hunted; // −1 if the threat is a predator, otherwise 0
 };
@@ -65,7 +65,7 @@ class Hunt {
     ///
     /// tick  of the generation, in which it acts.
     void look(const physics::Circles& bodies, const LivingOrganisms& living, std::uint32_t body, std::uint32_t tick,
-              Sight& sight) const;
+              SeenPlaces& seen_places) const;
 
     /// Lets the organisms of a block look, and sets the members of `columns` that describe what they see.
     ///

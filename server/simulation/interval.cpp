@@ -6,8 +6,8 @@
 namespace evod::simulation {
 namespace {
 
-/// Returns the items of the next interval. Items that do not reappear any more are forgotten. If fewer than `rules.count`
-/// remain, new ones appear in its first tick; if more, those with the highest ids vanish.
+/// Returns the items of the next interval. Items that do not reappear any more are forgotten. If fewer than
+/// `rules.count` remain, new ones appear in its first tick; if more, those with the highest ids vanish.
 ///
 /// tick  the last of this interval.
 base::Column<Items::Item> items_from(const Items& items, const ItemRules& rules, std::uint32_t tick,

@@ -202,6 +202,8 @@ class Island {
         evolution::Parents parents;
         bool is_predator;
     };
+    /// Returns what is impossible about the organisms of a state that were placed or born; nullptr: nothing.
+    const char* fault_of_arrivals(const IslandState& state, std::uint32_t tick) const;
     const Arrival& arrival(std::uint32_t id) const { return arrivals_[id - bred_count()]; }
     void fill(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor);
     /// Appends organisms, without updating hash_ and what is derived from bodies.

@@ -30,7 +30,7 @@ struct OrganismColumns {
     const float *loss_per_tick = nullptr, *normal_speed, *impulse = nullptr;
     std::int32_t *seen_x = nullptr, *seen_y = nullptr; // where the organism was when its views were last updated
     ViewColumns food{}, poison{};
-    // With predators: all bits set if the poison seen is a predator, from which an organism may always flee; otherwise 0.
+    // With predators: all bits set if the poison seen is a predator, from which an organism may always flee; else 0.
     const std::int32_t* is_hunted = nullptr;
 };
 

@@ -82,6 +82,30 @@ IslandState Island::state(base::Executor& executor) const {
     return state;
 }
 
+const char* Island::fault_of_arrivals(const IslandState& state, std::uint32_t tick) const {
+    for (const IslandState::Placed& placed : state.placed) {
+        const auto is_body_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
+        if (placed.tick > tick || placed.genes.size() != static_cast<std::size_t>(born_.genes.rows()) ||
+            !std::ranges::all_of(std::span{placed.genes}.first<evolution::body_gene_count>(), is_body_gene) ||
+            !std::ranges::all_of(placed.genes, [](float gene) { return std::isfinite(gene); }) ||
+            placed.genes[evolution::BodySize] <= 0 || placed.genes[evolution::BodySize] > body_size_reachable) {
+            return "a placed organism";
+        }
+        const auto id = std::size_t{shape().organisms} + static_cast<std::size_t>(&placed - state.placed.data());
+        if ((placed.parents.first != no_parents.first || placed.parents.second != no_parents.second) &&
+            (!has_births_ || placed.parents.first >= id || placed.parents.second >= id)) {
+            return "the parents of a child";
+        }
+    }
+    for (const std::vector<float>& latest : state.latest_born) {
+        if (latest.size() % static_cast<std::size_t>(born_.genes.rows()) != 0 ||
+            !std::ranges::all_of(latest, [](float gene) { return std::isfinite(gene); })) {
+            return "the latest births";
+        }
+    }
+    return nullptr;
+}
+
 base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) const {
     const auto wrong = [this](const std::string& what) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
@@ -100,25 +124,8 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         (!has_births_ && state.placed.size() > placed_max) || (!own.has_bodies && !state.placed.empty())) {
         return wrong("number of organisms");
     }
-    for (const IslandState::Placed& placed : state.placed) {
-        const auto is_body_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
-        if (placed.tick > tick || placed.genes.size() != static_cast<std::size_t>(born_.genes.rows()) ||
-            !std::ranges::all_of(std::span{placed.genes}.first<evolution::body_gene_count>(), is_body_gene) ||
-            !std::ranges::all_of(placed.genes, [](float gene) { return std::isfinite(gene); }) ||
-            placed.genes[evolution::BodySize] <= 0 || placed.genes[evolution::BodySize] > body_size_reachable) {
-            return wrong("a placed organism");
-        }
-        const auto id = own.organisms + static_cast<std::size_t>(&placed - state.placed.data());
-        if ((placed.parents.first != no_parents.first || placed.parents.second != no_parents.second) &&
-            (!has_births_ || placed.parents.first >= id || placed.parents.second >= id)) {
-            return wrong("the parents of a child");
-        }
-    }
-    for (const std::vector<float>& latest : state.latest_born) {
-        if (latest.size() % static_cast<std::size_t>(born_.genes.rows()) != 0 ||
-            !std::ranges::all_of(latest, [](float gene) { return std::isfinite(gene); })) {
-            return wrong("the latest births");
-        }
+    if (const char* fault = fault_of_arrivals(state, tick)) {
+        return wrong(fault);
     }
     if (state.crates.size() != own.crates) {
         return wrong("number of crates");

@@ -177,7 +177,8 @@ const std::vector<Scenario>& all() {
          base::Seed{60},
          900,
          {{200, R"({"birth_every_s": 0.1, "population_max": 40, "mate_px": 400})"},
-          {500, R"({"births": "asexual", "health_cap_per_size": 2.5, "body_size_cost": 0.3, "birth_health": 120})"}}},
+          {500, R"({"births": "asexual", "health_cap_per_size": 2.5, "body_size_cost": 0.3,
+                    "birth_health": 120})"}}},
 
         {"predators_and_prey", // with births; they arrive late, and two islands exchange them
          R"({"reproduction": "births", "births": "asexual", "island_count": 2, "population_size": 80, "food_count": 150,

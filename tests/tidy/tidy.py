@@ -322,6 +322,7 @@ UNIT_TESTED_ELSEWHERE = {
     ("server/commands", "prune"): "system/disk_space_test; its logic is run_file/ended_runs",
     ("server/commands", "limits parameters serve"): "system/console_test; their logic is parameters/ and serve_options",
     ("server/simulation", "local_islands run_parameters"): "unit/simulation/world_test and scheduled_world_test",
+    ("server/simulation", "births body_grid hunt interval local_colonies"): "unit/simulation/colony_test",
     ("server/simulation/shared", "part"): "tests/determinism/shared_world_test and shared_laboratory_test",
     ("server/evolution", "breeding"): "unit/evolution/next_generation_test",
     ("server/experiments", "sweep_design"): "unit/experiments/sweep_file_test",

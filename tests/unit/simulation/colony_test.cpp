@@ -23,7 +23,7 @@ using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// An island on which nothing is eaten and nobody loses health.
+/// An island on which nothing is eaten and no organism loses health.
 class QuietIsland : public SmallIsland {
   protected:
     QuietIsland() {
