@@ -172,8 +172,8 @@ const std::vector<Scenario>& all() {
         {"sexual_births", // births, old age, migrants and changes of the rules
          R"({"reproduction": "births", "island_count": 2, "population_size": 60, "food_count": 120, "respawn_s": 1,
              "generation_s": 2, "birth_health": 90, "birth_cost": 5, "mate_px": 150, "lifespan_s": 6,
-             "food_health": 60, "population_max": 90, "crate_count": 3, "migration": "ring", "migration_epoch": 1, "migrant_count": 2,
-             "scale_chance": 0.3, "crossover": "blend"})",
+             "food_health": 60, "population_max": 90, "crate_count": 3, "migration": "ring", "migration_epoch": 1,
+             "migrant_count": 2, "scale_chance": 0.3, "crossover": "blend"})",
          base::Seed{60},
          900,
          {{200, R"({"birth_every_s": 0.1, "population_max": 40, "mate_px": 400})"},

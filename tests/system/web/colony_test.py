@@ -7,7 +7,8 @@ import unittest
 from page_case import Case, c, w
 
 COLONY = {"reproduction": "births", "births": "asexual", "population_size": 40, "predator_count": 6,
-          "birth_health": 120.0, "food_count": 60, "generation_s": 2.0, "island_width_px": 900.0, "island_height_px": 500.0}
+          "birth_health": 120.0, "food_count": 60, "generation_s": 2.0,
+          "island_width_px": 900.0, "island_height_px": 500.0}
 TICKS = 120  # of an interval
 
 
