@@ -136,11 +136,12 @@ export class PlotsPanel implements Panel {
 
   #build(): void {
     const world = this.#context.world(), quantity = this.#tabs.chosen, {window, island} = this.#scope;
+    const births = world.has_births;
     const of_genes = quantity === "genes" || quantity === "selection";
     this.#genes.element.hidden = !of_genes;
     const description = JSON.stringify([
       this.#table.revision, world.history.changes.length, world.history.is_complete, this.#comparison.revision,
-      quantity, island, this.#genes.described, window, world.gene_names.length, this.#scope.of_predators
+      quantity, island, this.#genes.described, window, world.gene_names.length, this.#scope.of_predators, births
     ]);
     if (description !== this.#drawn) {
       this.#drawn = description;
@@ -153,13 +154,13 @@ export class PlotsPanel implements Panel {
       const genes = of_genes ? this.#genes.update(world, quantity, subject) : [];
       const gene = of_genes ? this.#genes.gene : "";
       const empty = !world.history.is_complete                       ? texts.loading :
-        quantity === "selection" && this.#table.generation_count > 0 ? texts.from_second :
-                                                                       texts.none_ended;
-      const content = figure_of({quantity, subject, other, genes, gene, window, births: world.has_births});
+        quantity === "selection" && this.#table.generation_count > 0 ? texts.from_second(births) :
+                                                                       texts.none_ended(births);
+      const content = figure_of({quantity, subject, other, genes, gene, window, births});
       this.#plot.element.hidden = quantity === "phase";
       this.#phase.element.hidden = quantity !== "phase";
       if (quantity === "phase") {
-        this.#phase.update(this.#table, island, window);
+        this.#phase.update(this.#table, island, window, births);
       }
       this.#plot.set_content(
         {...content, note_end: plot_texts.click_shows(this.#context.world().past.range?.first_generation ?? 1), empty});
@@ -170,8 +171,9 @@ export class PlotsPanel implements Panel {
                                    texts.selection_of_one);
       set_text(
         this.#known,
-        this.#table.generation_count === 0 ? "" :
-                                             texts.known(this.#table.generation_count, this.#table.last_generation));
+        this.#table.generation_count === 0 ?
+          "" :
+          texts.known(this.#table.generation_count, this.#table.last_generation, births));
     }
     this.#histogram.update(world, quantity === "genes" ? this.#genes.gene : "");
   }

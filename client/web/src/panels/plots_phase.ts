@@ -18,8 +18,9 @@ export class PhasePlot {
   readonly #note = h("p", {class: "hint"});
   readonly element = h("div", {}, this.#svg, this.#note);
 
-  /** window: generations of the running mean; 1: none */
-  update(table: HistoryTable, island: Island, window: number): void {
+  /** window  generations of the running mean; 1: none
+   *  births  generations are intervals */
+  update(table: HistoryTable, island: Island, window: number, births: boolean): void {
     const generation = table.column(island, "generation").slice(-shown_max);
     const of = (column: "colony:count_mean"|"predators:count_mean"): Numbers =>
       running_mean(table.column(island, column), window).slice(-shown_max);
@@ -50,7 +51,7 @@ export class PhasePlot {
       fill: "var(--series-orange)",
       stroke: "currentColor"
     }));
-    set_text(this.#note, texts.newest(generation[last]!, prey[last]!, predators[last]!));
+    set_text(this.#note, texts.newest(generation[last]!, prey[last]!, predators[last]!, births));
   }
 }
 

@@ -28,8 +28,8 @@ export const organism_texts = {
   body: (radius_px: number, mass_kg: number) => `radius ${tenths(radius_px)} px, mass ${mass_kg.toFixed(2)} kg`,
 
   alive: (lived_s: number, health: number) => `alive for ${tenths(lived_s)} s, health ${tenths(health)}`,
-  alive_when_last_seen: (lived_s: number) =>
-    `alive when last seen after ${tenths(lived_s)} s; its generation has ended`,
+  alive_when_last_seen: (lived_s: number, births: boolean) =>
+    `alive when last seen after ${tenths(lived_s)} s; ${births ? "the interval" : "its generation"} has ended`,
   starved: (lived_s: number) => `died of hunger after ${tenths(lived_s)} s`,
   poisoned: (lived_s: number) => `died of poison after ${tenths(lived_s)} s`,
   eaten_by_predator: (lived_s: number) => `eaten by a predator after ${tenths(lived_s)} s`,

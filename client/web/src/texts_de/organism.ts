@@ -28,8 +28,8 @@ export const organism_texts: typeof english.organism_texts = {
   body: (radius_px, mass_kg) => `Radius ${tenths(radius_px)} px, Masse ${localised(mass_kg.toFixed(2))} kg`,
 
   alive: (lived_s, health) => `lebt seit ${tenths(lived_s)} s, Gesundheit ${tenths(health)}`,
-  alive_when_last_seen: (lived_s) =>
-    `lebte noch, als er nach ${tenths(lived_s)} s zuletzt zu sehen war; seine Generation ist zu Ende`,
+  alive_when_last_seen: (lived_s, births) => `lebte noch, als er nach ${tenths(lived_s)} s zuletzt zu sehen war; ${
+    births ? "das Intervall" : "seine Generation"} ist zu Ende`,
   starved: (lived_s) => `nach ${tenths(lived_s)} s verhungert`,
   poisoned: (lived_s) => `nach ${tenths(lived_s)} s an Gift gestorben`,
   eaten_by_predator: (lived_s) => `nach ${tenths(lived_s)} s von einem Räuber gefressen`,
