@@ -15,7 +15,9 @@ export function fate_text(history: OrganismHistory): string {
   }
   const lived_s = age_of(info);
   if (info.alive) {
-    return history.ended ? texts.alive_when_last_seen(lived_s, history.has_births) : texts.alive(lived_s, info.health ?? 0);
+    return history.ended ?
+      texts.alive_when_last_seen(lived_s, history.has_births) :
+      texts.alive(lived_s, info.health ?? 0);
   }
   switch (info.cause_of_death) {
     case "CAUSE_OF_DEATH_REMOVED":

@@ -114,7 +114,7 @@ export const plots_panel_texts: typeof english.plots_panel_texts = {
       births    ? "e" :
                   "en"}, bis ${shown_number(last)}`,
   none_ended: (births) => `Noch ist kein${births ? "" : "e"} ${round(births)} zu Ende`,
-  from_second: (births) => `Bekannt ${births ? "vom zweiten" : "ab der zweiten"} ${round(births)}${births ? " an" : ""}`,
+  from_second: (births) => `Bekannt ab ${births ? "dem" : "der"} zweiten ${round(births)}`,
   loading: "…",
   selection_of_all: "Price-Gleichung: wie stark die Selektion den Mittelwert jedes Gens geändert hat. Über 0 hatten " +
     "Organismen mit mehr davon mehr Nachkommen.",
