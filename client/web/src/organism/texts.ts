@@ -84,7 +84,7 @@ export function birth_text({info, is_older}: OrganismHistory): string {
   const [first, second] = info?.parents ?? [];
   return info === null ? "" :
     is_older           ? texts.born_before :
-    first === undefined ? parents_text(info, "unknown") :
+    first === undefined ? (info.placed_tick === undefined ? texts.arrived : parents_text(info, "unknown")) :
     first === (second ?? first) ? texts.child_of_parent(first) :
                                   texts.child_of_parents(first, second!);
 }

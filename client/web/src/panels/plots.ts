@@ -88,8 +88,8 @@ export class PlotsPanel implements Panel {
     this.#predators.set_history(generations.flatMap((one) => one.predators ?? []));
     const of_two = has_predators({table: this.#table, island: null});
     this.#compare.update(world.name);
-    this.#scope.update(this.#table.island_count, of_two);
     this.#tabs.offer(generations.at(-1)?.colony === undefined ? [] : of_two ? colony_quantities : ["population"]);
+    this.#scope.update(this.#table.island_count, of_two, colony_quantities.includes(this.#tabs.chosen));
     this.#need_population();
     const wait = this.#next_build_ms - performance.now();
     if (wait > 0) {
@@ -135,8 +135,9 @@ export class PlotsPanel implements Panel {
   }
 
   #build(): void {
-    const world = this.#context.world(), quantity = this.#tabs.chosen, {window, island} = this.#scope;
-    const births = world.has_births;
+    const world = this.#context.world(), quantity = this.#tabs.chosen, {island} = this.#scope;
+    const births = world.has_births, of_colony = colony_quantities.includes(quantity);
+    const window = of_colony ? 1 : this.#scope.window; // the numbers are means of a generation already
     const of_genes = quantity === "genes" || quantity === "selection";
     this.#genes.element.hidden = !of_genes;
     const description = JSON.stringify([
@@ -147,7 +148,6 @@ export class PlotsPanel implements Panel {
       this.#drawn = description;
       const {name, history: {changes}, gene_names} = world;
       const marks = [...marks_of(changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
-      const of_colony = colony_quantities.includes(quantity);
       const table = this.#scope.of_predators && !of_colony ? this.#predators : this.#table;
       const subject = {table, island, name, gene_names, changes: marks},
             other = this.#comparison.subject(island);
@@ -160,7 +160,7 @@ export class PlotsPanel implements Panel {
       this.#plot.element.hidden = quantity === "phase";
       this.#phase.element.hidden = quantity !== "phase";
       if (quantity === "phase") {
-        this.#phase.update(this.#table, island, window, births);
+        this.#phase.update(this.#table, island, births);
       }
       this.#plot.set_content(
         {...content, note_end: plot_texts.click_shows(this.#context.world().past.range?.first_generation ?? 1), empty});

@@ -53,6 +53,7 @@ export const organism_texts = {
   both_parents: ", which was both parents",
   parents: (first: number, second: number, generation: number) =>
     `Parents: ${first} and ${second} (generation ${with_separators(generation)})`,
+  arrived: "No parents: it came at the beginning of this interval",
   born_before: "It was born before this interval",
   child_of_parent: (parent: number) => `Child of organism ${parent} of this interval`,
   child_of_parents: (first: number, second: number) => `Child of organisms ${first} and ${second} of this interval`,

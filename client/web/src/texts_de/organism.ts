@@ -52,6 +52,7 @@ export const organism_texts: typeof english.organism_texts = {
   of_survivors: ": Dieser Organismus hat überlebt",
   both_parents: ", zugleich beide Eltern",
   parents: (first, second, generation) => `Eltern: ${first} und ${second} (Generation ${with_separators(generation)})`,
+  arrived: "Keine Eltern: Er kam am Anfang dieses Intervalls",
   born_before: "Er wurde vor diesem Intervall geboren",
   child_of_parent: (parent) => `Kind von Organismus ${parent} dieses Intervalls`,
   child_of_parents: (first, second) => `Kind der Organismen ${first} und ${second} dieses Intervalls`,

@@ -99,7 +99,7 @@ export class Selection {
       if (found?.generation !== next.generation || !is_shown) {
         return;
       }
-      const is_born_here = (found.age_s ?? 0) < (found.lived_s ?? 0) + 1e-6;
+      const is_born_here = found.placed_tick !== undefined;
       if (!is_born_here && rank(found) === rank(sought)) {
         this.select(organism);
         this.set_follow(follow);
