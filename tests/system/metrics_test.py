@@ -162,7 +162,7 @@ class Counts(Case):
             self.assertEqual(at_rest("evod_ticks_total", world="default"), ticks)
 
     def test_the_species_of_a_colony(self):
-        experiment = pathlib.Path(self.folder) / "colony.json"
+        experiment = pathlib.Path(self.folder) / "default.json"
         experiment.write_text(json.dumps({"reproduction": "births", "births": "asexual", "population_size": 40,
                                           "predator_count": 6, "birth_health": 120, "food_count": 60,
                                           "generation_s": 2}))
