@@ -6,6 +6,7 @@
 
 #include "server/metrics/counters.h"
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -13,12 +14,20 @@
 
 namespace evod::metrics {
 
+/// A species of a colony.
+struct Species {
+    Gauge living;    // at the end of the last generation, which with births is an interval
+    Counter born;    // in the generations that have ended
+    Counter counted; // generations in which the world had this species
+};
+
 struct World {
     std::string name;
     // Time per tick, including journal and snapshots; if several ticks are timed together, their mean.
     TimeHistogram tick_time;
-    TimeHistogram snapshot_time; // time for which the simulation thread copies a snapshot
-    Gauge ticks_per_s;           // measured; 0 while the world does not run
+    TimeHistogram snapshot_time;    // time for which the simulation thread copies a snapshot
+    Gauge ticks_per_s;              // measured; 0 while the world does not run
+    std::array<Species, 2> species; // the prey and the predators of a colony
 };
 
 class Worlds {

@@ -22,6 +22,8 @@
 #include <chrono>
 #include <climits>
 #include <map>
+#include <memory>
+#include <span>
 
 namespace evod::network {
 namespace {
@@ -37,6 +39,21 @@ double number(std::uint64_t count) {
 constexpr std::array storage_states{
     std::pair{v1::STORAGE_STATE_KEEPS_UP, "keeps_up"}, std::pair{v1::STORAGE_STATE_BEHIND, "behind"},
     std::pair{v1::STORAGE_STATE_FAILING, "failing"}, std::pair{v1::STORAGE_STATE_STALLED, "stalled"}};
+
+void add_colonies(v1::Metrics& to, std::span<const std::shared_ptr<const metrics::World>> worlds) {
+    constexpr std::array names{"prey", "predators"};
+    auto living =
+        add_gauge(to, "evod_colony_organisms", "Living organisms of a species at the end of the last interval");
+    auto born = add_counter(to, "evod_colony_births_total", "Births of a species in the intervals that have ended");
+    for (const auto& world : worlds) {
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (const metrics::Species& species = world->species[i]; species.counted.value() > 0) {
+                living.add(species.living.value(), {{"world", world->name}, {"species", names[i]}});
+                born.add(number(species.born.value()), {{"world", world->name}, {"species", names[i]}});
+            }
+        }
+    }
+}
 
 void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
     const auto worlds = counted.list();
@@ -55,6 +72,7 @@ void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
         tick_time.add(world->tick_time, {{"world", world->name}});
         snapshot_time.add(world->snapshot_time, {{"world", world->name}});
     }
+    add_colonies(to, worlds);
 }
 
 void add_queues(v1::Metrics& to, const base::Quota& mailbox, const runtime::Outbox::FillLevel& outbox) {

@@ -112,12 +112,13 @@ std::string about_meals(const Parameters& p) {
     return text;
 }
 
-/// "From generation 10 on, 20 predators hunt them. "; empty if there are none.
+/// "From interval 10 on, 20 predators hunt them. "; empty if there are none.
 std::string about_predators(const Parameters& p) {
     if (p.predator_count == 0) {
         return "";
     }
-    const std::string from = p.predator_from > 1 ? "From generation " + shown(p.predator_from) + " on, " : "";
+    const std::string round = parameters::has_births(p) ? "interval " : "generation ";
+    const std::string from = p.predator_from > 1 ? "From " + round + shown(p.predator_from) + " on, " : "";
     return from + counted(p.predator_count, "predator hunts", "predators hunt") + " them. ";
 }
 

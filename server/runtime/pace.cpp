@@ -3,6 +3,8 @@
 #include "server/simulation/world_name.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 namespace evod::runtime {
@@ -15,6 +17,31 @@ std::uint64_t ticks_in(Clock::duration time, Clock::duration tick, std::int64_t 
 
 std::optional<Clock::time_point> earlier(std::optional<Clock::time_point> a, std::optional<Clock::time_point> b) {
     return a && b ? std::min(*a, *b) : a ? a : b;
+}
+
+/// Counts the species of a colony at the end of a generation.
+void count_species(std::span<const simulation::GenerationStatistics> islands, std::array<metrics::Species, 2>& to) {
+    std::array<double, 2> living{};
+    std::array<std::uint64_t, 2> born{};
+    std::array<bool, 2> has_come{};
+    const auto add = [&](std::size_t species, const simulation::GenerationStatistics& of) {
+        living[species] += of.alive_count;
+        born[species] += of.colony ? of.colony->born_count : 0;
+        has_come[species] = has_come[species] || of.colony;
+    };
+    for (const simulation::GenerationStatistics& island : islands) {
+        add(0, island);
+        for (const simulation::GenerationStatistics& predators : island.predators) {
+            add(1, predators);
+        }
+    }
+    for (std::size_t species = 0; species < to.size(); ++species) {
+        if (has_come[species] || to[species].counted.value() > 0) {
+            to[species].living.set(living[species]);
+            to[species].born.add(born[species]);
+            to[species].counted.add();
+        }
+    }
 }
 
 } // namespace
@@ -204,6 +231,9 @@ std::uint64_t Pace::advance(simulation::Entry& entry, WorldData& data) {
         ticks = std::min(ticks_in(between_exchanges, data.pace.tick_time(), run_file::ticks_per_hash), to_next_hash);
     }
     laboratory_.advance(entry, ticks, tools_.executor);
+    if (data.counted && entry.world.generation_over()) {
+        count_species(entry.world.history().back(), data.counted->species);
+    }
     return entry.world.moment().tick - before;
 }
 

@@ -161,6 +161,23 @@ class Counts(Case):
             at_rest = self.wait(server, lambda m: m("evod_ticks_per_second", world="default") == 0, "rest")
             self.assertEqual(at_rest("evod_ticks_total", world="default"), ticks)
 
+    def test_the_species_of_a_colony(self):
+        experiment = pathlib.Path(self.folder) / "default.json"
+        experiment.write_text(json.dumps({"reproduction": "births", "births": "asexual", "population_size": 40,
+                                          "predator_count": 6, "birth_health": 120, "food_count": 60,
+                                          "generation_s": 2}))
+        server = self.serve("--experiment", str(experiment), "--seed", "1")
+        self.assertNotIn("evod_colony_organisms", {name for name, _ in self.metrics(server).samples})
+        with self.client(server) as client:
+            client.run_to(3 * 120)
+            last = client.call(get_statistics=c.GetStatistics(world="default")).statistics.last[0]
+            history = client.call(get_history=c.GetHistory(world="default")).history.generations
+        metrics = self.wait(server, lambda m: m("evod_ticks_total", world="default") == 360, "all ticks")
+        for species, of in (("prey", last), ("predators", last.predators)):
+            self.assertEqual(metrics("evod_colony_organisms", world="default", species=species), of.alive_count)
+        self.assertEqual(metrics("evod_colony_births_total", world="default", species="prey"),
+                         sum(one.colony.born_count for one in history))
+
     def test_snapshots_that_are_given_away(self):
         server = self.serve("--speed", "max", "--start")
         with self.client(server) as client:

@@ -23,7 +23,7 @@ const char* outcome_words(evod::v1::Outcome outcome) {
     case evod::v1::OUTCOME_STAGNATION:
         return "fitness has stagnated";
     case evod::v1::OUTCOME_EXTINCTION:
-        return "all organisms have died";
+        return "all organisms of a species have died";
     default:
         return "a termination criterion is met";
     }

@@ -62,11 +62,11 @@ class Colony(Case):
         self.colony(4 * TICKS + 10)
         browser = self.browser
         browser.panel("Plots")
-        browser.wait_for_text("4 generations, up to 4", ".plots")
+        browser.wait_for_text("4 intervals, up to 4", ".plots")
         browser.press("Population", ".plots")
         browser.wait_for_text("predators, mean", ".plots .plot-legend")
         browser.press("Phase plot", ".plots")
-        browser.wait_for_text("Circle: generation 4,", ".plots")
+        browser.wait_for_text("Circle: interval 4,", ".plots")
         self.assertGreater(browser.value("document.querySelectorAll('.phase-plot polyline').length"), 0)
 
 

@@ -50,7 +50,7 @@ TEST(ExperimentSummary, SaysHowAColonyLives) {
     parameters.predator_from = 10;
     EXPECT_THAT(
         experiment_summary(parameters),
-        testing::EndsWith("and dies at 0. From generation 10 on, 20 predators hunt them. Fitness is the number of "
+        testing::EndsWith("and dies at 0. From interval 10 on, 20 predators hunt them. Fitness is the number of "
                           "children. There are no generations: two organisms with at least 120 health have a "
                           "child and pay for it with health."));
 }

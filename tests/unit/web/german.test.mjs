@@ -144,6 +144,6 @@ test("the summary of a colony is German", () => {
                   predator_from: { count: 10 }, health_loss_per_s: { real: 6 } };
   const set = { summary: "…", parameters: Object.entries(value).map(([name, value]) => ({ name, value })) };
   const text = page.experiment_text(set);
-  assert.match(text, /stirbt bei 0\. Ab Generation 10 jagen sie 20 Räuber\. Die Fitness ist die Zahl der Kinder\. /);
+  assert.match(text, /stirbt bei 0\. Ab Intervall 10 jagen sie 20 Räuber\. Die Fitness ist die Zahl der Kinder\. /);
   assert.match(text, /Es gibt keine Generationen: zwei Organismen mit mindestens 120 Gesundheit bekommen ein Kind und bezahlen es mit Gesundheit\.$/);
 });

@@ -40,7 +40,7 @@ test("a dead organism keeps its last network", () => {
   assert.equal(organism.fate_text(history), "died of poison after 3.0 s");
 });
 
-const born = (fields = {}) => info({ number: 120, age_s: 2, parents: [4, 4], ...fields });
+const born = (fields = {}) => info({ number: 120, age_s: 2, parents: [4, 4], placed_tick: 9, ...fields });
 
 test("with births nothing is asked about picks", () => {
   const history = new organism.OrganismHistory(place);
@@ -51,13 +51,17 @@ test("with births nothing is asked about picks", () => {
   assert.equal(organism.birth_text(history), "Child of organisms 4 and 9 of this interval");
   history.add_info(born({ parents: [], placed_tick: 7 }));
   assert.match(organism.birth_text(history), /^No parents: placed by a user after tick 7/);
+  history.add_info(born({ parents: [], placed_tick: undefined }));
+  assert.equal(organism.birth_text(history), "No parents: it came at the beginning of this interval");
+  history.add_info(born({ age_s: 2, lived_s: 2, parents: [4], placed_tick: undefined })); // born in the last tick of an interval
+  assert.equal(organism.birth_text(history), "It was born before this interval");
 });
 
 test("with births a life goes on over intervals", () => {
   const before = new organism.OrganismHistory(place), after = { ...place, id: 1, generation: 6 };
   before.add_info(born({ health: 50 }));
   const same = new organism.OrganismHistory(after, before), other = new organism.OrganismHistory(after, before);
-  const next = { id: 1, generation: 6, age_s: 5, lived_s: 1, health: 30, parents: [3, 3] };
+  const next = { id: 1, generation: 6, age_s: 5, lived_s: 1, health: 30, parents: [3], placed_tick: undefined };
   same.add_info(born(next));
   other.add_info(born({ ...next, number: 121 }));
   assert.deepEqual(same.health, [{ s: 2, health: 50 }, { s: 5, health: 30 }]);
@@ -85,7 +89,7 @@ test("a followed organism is found again by its number", async () => {
   const request = async (_, { organism }) => {
     asked.push(organism);
     const [number, is_predator, is_new] = living[organism];
-    return { generation: 2, number, lived_s: 1, age_s: is_new ? 1 : 9, ...(is_predator ? { species: "SPECIES_PREDATOR" } : {}) };
+    return { generation: 2, number, lived_s: 1, placed_tick: is_new, ...(is_predator ? { species: "SPECIES_PREDATOR" } : {}) };
   };
   const feed = { world: "w", island: 0, pane: 0, snapshot: { run_id: "r", generation: 1 }, server: { request, post: () => undefined } };
   for (const [number, species, id] of [[120, undefined, 2], [3, undefined, 0], [90, "SPECIES_PREDATOR", 5], [41, undefined, null]]) {

@@ -64,7 +64,7 @@ export class BreedingFeed {
 
   #choose_record(world: ViewedWorld, follow: boolean): void {
     const snapshot = world.snapshot;
-    if (!snapshot) {
+    if (!snapshot || world.has_births) {
       this.#forget();
       return;
     }
@@ -107,6 +107,7 @@ export class BreedingFeed {
   #forget(): void {
     this.shown = this.#next = this.comparison = null;
     this.newest = this.last = 0;
+    this.problem = this.origin_run = "";
     this.#stepper.load(0, 0);
   }
 

@@ -69,10 +69,9 @@ export class OrganismHistory {
     return this.info?.number !== undefined;
   }
 
-  /** Whether it was born before this interval. */
+  /** Whether it lived in the interval before. */
   get is_older(): boolean {
-    const {age_s = 0, lived_s = 0} = this.info ?? {};
-    return this.has_births && age_s > lived_s + 1e-6;
+    return this.has_births && this.info?.placed_tick === undefined && distinct_parents(this.info).length > 0;
   }
 
   get dead(): boolean {

@@ -15,7 +15,9 @@ export function fate_text(history: OrganismHistory): string {
   }
   const lived_s = age_of(info);
   if (info.alive) {
-    return history.ended ? texts.alive_when_last_seen(lived_s) : texts.alive(lived_s, info.health ?? 0);
+    return history.ended ?
+      texts.alive_when_last_seen(lived_s, history.has_births) :
+      texts.alive(lived_s, info.health ?? 0);
   }
   switch (info.cause_of_death) {
     case "CAUSE_OF_DEATH_REMOVED":
@@ -82,7 +84,7 @@ export function birth_text({info, is_older}: OrganismHistory): string {
   const [first, second] = info?.parents ?? [];
   return info === null ? "" :
     is_older           ? texts.born_before :
-    first === undefined ? parents_text(info, "unknown") :
+    first === undefined ? (info.placed_tick === undefined ? texts.arrived : parents_text(info, "unknown")) :
     first === (second ?? first) ? texts.child_of_parent(first) :
                                   texts.child_of_parents(first, second!);
 }

@@ -306,7 +306,8 @@ export class App implements KeyTarget {
       this.#banners.set([...banners, ...this.class_mode.banners()]);
       this.#notices.refresh();
       const {counts} = this.world().snapshot ?? {};
-      set_text(this.#about, app_texts.about(counts !== undefined && counts.food + counts.poison > 0));
+      const has_items = counts !== undefined && counts.food + counts.poison > 0;
+      set_text(this.#about, app_texts.about(has_items, this.world().has_births));
       document.title = app_texts.title(this.world().name);
     }
   }

@@ -16,6 +16,7 @@ export class GenerationField {
 
   readonly #world: ViewedWorld;
   readonly #seeker: Seeker;
+  readonly #label = h("span", {});
   readonly #field = h("input", {
     class: "field time-generation",
     inputmode: "numeric",
@@ -27,13 +28,14 @@ export class GenerationField {
   constructor(world: ViewedWorld, seeker: Seeker) {
     this.#world = world;
     this.#seeker = seeker;
-    this.element = h("label", {class: "hint time-field"}, texts.label, this.#field);
+    this.element = h("label", {class: "hint time-field"}, this.#label, this.#field);
   }
 
   /** Shows the generation, unless the user types. */
   refresh(): void {
     const {snapshot, past: {target}} = this.#world, {first, last} = this.#allowed();
-    set_attribute(this.#field, "title", texts.help(first, last));
+    set_text(this.#label, texts.label(this.#world.has_births));
+    set_attribute(this.#field, "title", texts.help(first, last, this.#world.has_births));
     if (document.activeElement !== this.#field && snapshot) {
       set_value(this.#field, String(target?.generation ?? snapshot.generation));
     }
@@ -50,8 +52,8 @@ export class GenerationField {
     if (event.key === "Escape") {
       this.#field.blur();
     } else if (event.key === "Enter") {
-      const {first, last} = this.#allowed();
-      const generation = number_in(texts.label, this.#field.value.replace(/,/g, ""), first, last);
+      const {first, last} = this.#allowed(), name = texts.label(this.#world.has_births);
+      const generation = number_in(name, this.#field.value.replace(/,/g, ""), first, last);
       set_text(this.wrong, typeof generation === "string" ? `${capitalised(generation)}.` : "");
       set_attribute(this.#field, "aria-invalid", typeof generation === "string" ? "true" : null);
       if (typeof generation === "number") {

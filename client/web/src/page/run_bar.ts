@@ -41,7 +41,7 @@ export class RunBar {
     this.#run =
       button(texts.run, (world) => this.#attempt(() => world.control.pause_or_resume()), "button button-primary run");
     this.#both = button(both_texts.run, () => void run_or_pause_both(context), "button both");
-    this.#generation = button(texts.generation, (world) => this.#attempt(() => world.control.run(1)));
+    this.#generation = button(texts.generation(false), (world) => this.#attempt(() => world.control.run(1)));
     this.#replay = button(texts.replay, (world) => toggle_replay(context, world));
     this.#fork = button(texts.fork, () => void context.fork());
     this.#new = button(texts.create, () => context.open("worlds", {create: true}), "button new");
@@ -87,7 +87,8 @@ export class RunBar {
     this.#both.hidden = both === null;
     set_text(this.#both, both?.is_pause ? both_texts.pause : both_texts.run);
     set_allowed(this.#both, both?.why_not ?? "", both_texts.run_help);
-    set_allowed(this.#generation, why_run, texts.generation_help);
+    set_text(this.#generation, texts.generation(world.has_births));
+    set_allowed(this.#generation, why_run, texts.generation_help(world.has_births));
     set_text(this.#replay, world.past.is_own_replay ? texts.live : texts.replay);
     set_allowed(
       this.#replay, world.past.is_own_replay ? "" : world.past.problem,

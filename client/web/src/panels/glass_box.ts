@@ -43,6 +43,7 @@ export class GlassBoxPanel implements Panel {
   readonly #follow: HTMLInputElement = h("input", {type: "checkbox", checked: true, onchange: () => this.refresh()});
   readonly #play_each: HTMLInputElement = h("input", {type: "checkbox"});
   readonly #birth = button(glass_box_texts.birth, () => this.#go_to_birth());
+  readonly #choices: HTMLElement;
   readonly #messages: Messages;
   readonly #body: HTMLElement;
   readonly #width: Width;
@@ -62,18 +63,19 @@ export class GlassBoxPanel implements Panel {
     this.#messages = new Messages(context, try_again, (generation) => this.show({generation}));
     this.#hold = new HoldControl(context, () => this.refresh());
     this.#body = h("div", {class: "panel"}, this.#steps.element, this.#tabs.element);
+    this.#choices =
+      row(
+        h("span", {}, glass_box_texts.generation), this.#generation,
+        check(this.#follow, glass_box_texts.follow, glass_box_texts.follow_help),
+        check(this.#bets.chosen, glass_box_texts.bet, glass_box_texts.bet_help),
+        check(this.#play_each, glass_box_texts.play_each, glass_box_texts.play_each_help), this.#hold.element,
+        this.#birth);
     this.element =
       h("div", {
         class: "panel glass-box",
         onkeydown: (event: KeyboardEvent) => this.#feed.shown && this.#steps.press(event),
       },
-        row(
-          h("span", {}, glass_box_texts.generation), this.#generation,
-          check(this.#follow, glass_box_texts.follow, glass_box_texts.follow_help),
-          check(this.#bets.chosen, glass_box_texts.bet, glass_box_texts.bet_help),
-          check(this.#play_each, glass_box_texts.play_each, glass_box_texts.play_each_help), this.#hold.element,
-          this.#birth),
-        this.#messages.element, this.#body);
+        this.#choices, this.#messages.element, this.#body);
     this.#width = new Width(this.element, () => this.refresh());
   }
 
@@ -132,6 +134,7 @@ export class GlassBoxPanel implements Panel {
     if (document.activeElement !== this.#generation) {
       this.#generation.value = String(chosen || "");
     }
+    this.#choices.hidden = world.has_births;
     this.#generation.max = String(last || "");
     this.#generation.disabled = last === 0;
     this.#birth.hidden = !shown || world.selection.id === null || shown.key.generation !== newest ||
@@ -172,11 +175,12 @@ class Messages {
       this.#summary, shown ? glass_box_texts.summary(world.name, shown.key.generation, breeding_summary(shown)) : "");
     set_text(
       this.#waiting,
-      shown             ? "" :
-        !world.snapshot ? glass_box_texts.no_snapshot :
-        last === 0      ? glass_box_texts.nothing_bred :
-        problem         ? "" :
-                          glass_box_texts.loading);
+      shown               ? "" :
+        !world.snapshot   ? glass_box_texts.no_snapshot :
+        world.has_births  ? glass_box_texts.births :
+        last === 0        ? glass_box_texts.nothing_bred :
+        problem           ? "" :
+                            glass_box_texts.loading);
     this.#waiting.hidden = shown !== null;
   }
 }

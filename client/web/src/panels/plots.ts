@@ -88,8 +88,8 @@ export class PlotsPanel implements Panel {
     this.#predators.set_history(generations.flatMap((one) => one.predators ?? []));
     const of_two = has_predators({table: this.#table, island: null});
     this.#compare.update(world.name);
-    this.#scope.update(this.#table.island_count, of_two);
     this.#tabs.offer(generations.at(-1)?.colony === undefined ? [] : of_two ? colony_quantities : ["population"]);
+    this.#scope.update(this.#table.island_count, of_two, colony_quantities.includes(this.#tabs.chosen));
     this.#need_population();
     const wait = this.#next_build_ms - performance.now();
     if (wait > 0) {
@@ -135,31 +135,32 @@ export class PlotsPanel implements Panel {
   }
 
   #build(): void {
-    const world = this.#context.world(), quantity = this.#tabs.chosen, {window, island} = this.#scope;
+    const world = this.#context.world(), quantity = this.#tabs.chosen, {island} = this.#scope;
+    const births = world.has_births, of_colony = colony_quantities.includes(quantity);
+    const window = of_colony ? 1 : this.#scope.window; // the numbers are means of a generation already
     const of_genes = quantity === "genes" || quantity === "selection";
     this.#genes.element.hidden = !of_genes;
     const description = JSON.stringify([
       this.#table.revision, world.history.changes.length, world.history.is_complete, this.#comparison.revision,
-      quantity, island, this.#genes.described, window, world.gene_names.length, this.#scope.of_predators
+      quantity, island, this.#genes.described, window, world.gene_names.length, this.#scope.of_predators, births
     ]);
     if (description !== this.#drawn) {
       this.#drawn = description;
       const {name, history: {changes}, gene_names} = world;
       const marks = [...marks_of(changes), ...extinctions(this.#table, island)].sort((a, b) => a.x - b.x);
-      const of_colony = colony_quantities.includes(quantity);
       const table = this.#scope.of_predators && !of_colony ? this.#predators : this.#table;
       const subject = {table, island, name, gene_names, changes: marks},
             other = this.#comparison.subject(island);
       const genes = of_genes ? this.#genes.update(world, quantity, subject) : [];
       const gene = of_genes ? this.#genes.gene : "";
       const empty = !world.history.is_complete                       ? texts.loading :
-        quantity === "selection" && this.#table.generation_count > 0 ? texts.from_second :
-                                                                       texts.none_ended;
-      const content = figure_of({quantity, subject, other, genes, gene, window, births: world.has_births});
+        quantity === "selection" && this.#table.generation_count > 0 ? texts.from_second(births) :
+                                                                       texts.none_ended(births);
+      const content = figure_of({quantity, subject, other, genes, gene, window, births});
       this.#plot.element.hidden = quantity === "phase";
       this.#phase.element.hidden = quantity !== "phase";
       if (quantity === "phase") {
-        this.#phase.update(this.#table, island, window);
+        this.#phase.update(this.#table, island, births);
       }
       this.#plot.set_content(
         {...content, note_end: plot_texts.click_shows(this.#context.world().past.range?.first_generation ?? 1), empty});
@@ -170,8 +171,9 @@ export class PlotsPanel implements Panel {
                                    texts.selection_of_one);
       set_text(
         this.#known,
-        this.#table.generation_count === 0 ? "" :
-                                             texts.known(this.#table.generation_count, this.#table.last_generation));
+        this.#table.generation_count === 0 ?
+          "" :
+          texts.known(this.#table.generation_count, this.#table.last_generation, births));
     }
     this.#histogram.update(world, quantity === "genes" ? this.#genes.gene : "");
   }

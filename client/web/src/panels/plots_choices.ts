@@ -117,8 +117,10 @@ export class IslandAndMeanChoice {
     return !this.#species.hidden && this.#species.value === "predators";
   }
 
-  update(island_count: number, has_predators: boolean): void {
-    this.#species.hidden = !has_predators;
+  /** of_colony: the plot shows both species, and no running mean. */
+  update(island_count: number, has_predators: boolean, of_colony: boolean): void {
+    this.#smooth.hidden = of_colony;
+    this.#species.hidden = of_colony || !has_predators;
     this.#island.hidden = island_count < 2;
     const islands = Array.from(
       {length: this.#island.hidden ? 0 : island_count}, (_, i) => ({value: String(i), text: texts.island_name(i)}));

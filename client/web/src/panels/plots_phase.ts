@@ -1,6 +1,6 @@
 // PhasePlot: the predators of a colony over its prey, a point for each generation, joined by a line in their order.
 import type {HistoryTable, Island} from "../plots/history_table";
-import {range_of, running_mean, tick_label, ticks_in, with_room} from "../plots/plot_layout";
+import {range_of, tick_label, ticks_in, with_room} from "../plots/plot_layout";
 import type {Numbers} from "../plots/plot_layout";
 import {figure_texts} from "../texts/plots_panel";
 import {h, set_text, svg} from "../widgets/dom";
@@ -18,11 +18,11 @@ export class PhasePlot {
   readonly #note = h("p", {class: "hint"});
   readonly element = h("div", {}, this.#svg, this.#note);
 
-  /** window: generations of the running mean; 1: none */
-  update(table: HistoryTable, island: Island, window: number): void {
+  /** births: generations are intervals. */
+  update(table: HistoryTable, island: Island, births: boolean): void {
     const generation = table.column(island, "generation").slice(-shown_max);
     const of = (column: "colony:count_mean"|"predators:count_mean"): Numbers =>
-      running_mean(table.column(island, column), window).slice(-shown_max);
+      table.column(island, column).slice(-shown_max);
     const prey = of("colony:count_mean"), predators = of("predators:count_mean");
     const x = axis(prey), y = axis(predators), last = generation.length - 1;
     const x_of = (count: number): number => left + (count - x.min) / (x.max - x.min) * (right - left);
@@ -50,7 +50,7 @@ export class PhasePlot {
       fill: "var(--series-orange)",
       stroke: "currentColor"
     }));
-    set_text(this.#note, texts.newest(generation[last]!, prey[last]!, predators[last]!));
+    set_text(this.#note, texts.newest(generation[last]!, prey[last]!, predators[last]!, births));
   }
 }
 

@@ -204,7 +204,8 @@ export interface FigureRequest {
 /** Builds the plot of a quantity. */
 export function figure_of(request: FigureRequest): PlotContent {
   const make = new FigureBuilder(request.subject, request.other, request.window), {content} = make;
-  if (request.births) {
+  const {births = false} = request;
+  if (births) {
     content.x_label = texts.interval;
   }
   switch (request.quantity) {
@@ -230,7 +231,7 @@ export function figure_of(request: FigureRequest): PlotContent {
       Object.assign(content, {title: texts.survivors.title, y_label: texts.survivors.y, from_zero: true});
       make.line("alive_count", texts.survivors.alive, "green", plain, {compared: true, whole: true});
       make.line(
-        request.births ? "colony:born_count" : "organism_count", texts.survivors.born, "grey", thin,
+        births ? "colony:born_count" : "organism_count", texts.survivors.born, "grey", thin,
         {compared: false, whole: true});
       break;
     case "deaths":
@@ -244,7 +245,7 @@ export function figure_of(request: FigureRequest): PlotContent {
       make.compare("poisoned_count", texts.deaths.poisoned, "blue");
       break;
     case "food":
-      Object.assign(content, {title: texts.food.title, y_label: texts.food.y, from_zero: true});
+      Object.assign(content, {title: texts.food.title, y_label: texts.food.y(births), from_zero: true});
       make.line("food_eaten", texts.food.food, "green", plain, {compared: true, whole: true});
       make.line("poison_eaten", texts.food.poison, "vermilion", dashed, {compared: true, whole: true});
       break;
@@ -298,9 +299,9 @@ function build_genes(make: FigureBuilder, {subject, genes, gene}: FigureRequest)
   }
 }
 
-function build_selection(make: FigureBuilder, {genes, gene}: FigureRequest): void {
+function build_selection(make: FigureBuilder, {genes, gene, births = false}: FigureRequest): void {
   const {title, of_one, y, y_of_weights, change, selection, transmission, migration} = texts.selection;
-  make.content.y_label = is_weight(gene || genes[0]) ? y_of_weights : y;
+  make.content.y_label = is_weight(gene || genes[0]) ? y_of_weights(births) : y(births);
   if (gene === "") {
     make.content.title = title;
     make.gene_lines(genes, "selection");

@@ -67,7 +67,7 @@ export class FitnessCurve {
     };
     const known = x.length > 0;
     this.#plot.set_content({
-      title: known ? plot_texts.curve_title(x[x.length - 1]!) : plot_texts.no_curve,
+      title: known ? plot_texts.curve_title(x[x.length - 1]!, world.has_births) : plot_texts.no_curve,
       series: known ?
         [line(plot_texts.best, "fitness_best", "vermilion"), line(plot_texts.mean, "fitness_mean", "blue")] :
         [],

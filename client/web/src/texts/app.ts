@@ -2,9 +2,10 @@
 
 export const app_texts = {
   title: (world: string) => world === "" ? "evod" : `${world} – evod`,
-  about: (has_items: boolean) => "Evolution, live: " +
-    (has_items ? "organisms must find food and avoid poison; the fittest breed the next generation." :
-                 "the fittest organisms of each generation breed the next one."),
+  about: (has_items: boolean, births: boolean) => "Evolution, live: " +
+    (births      ? "organisms must find food and avoid poison; healthy ones have children." :
+       has_items ? "organisms must find food and avoid poison; the fittest breed the next generation." :
+                   "the fittest organisms of each generation breed the next one."),
   no_world: "The server has no world yet.",
   new_world: "New world …",
   skip: "Skip to the world",

@@ -18,6 +18,8 @@ export const glass_box_texts = {
   problem: (problem: string): string => `${problem}.`,
   retry: "Retry",
   no_snapshot: "Waiting for the first snapshot …",
+  births: "In this world no generation is bred: organisms have children while they live. The panel “Organism” names " +
+    "the parents of an organism. The plot “Selection” shows why the means of the genes change.",
   nothing_bred: "No generation has bred yet. The first one breeds when it ends and the next begins.",
   loading: "Loading …",
 

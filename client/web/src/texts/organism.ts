@@ -28,8 +28,8 @@ export const organism_texts = {
   body: (radius_px: number, mass_kg: number) => `radius ${tenths(radius_px)} px, mass ${mass_kg.toFixed(2)} kg`,
 
   alive: (lived_s: number, health: number) => `alive for ${tenths(lived_s)} s, health ${tenths(health)}`,
-  alive_when_last_seen: (lived_s: number) =>
-    `alive when last seen after ${tenths(lived_s)} s; its generation has ended`,
+  alive_when_last_seen: (lived_s: number, births: boolean) =>
+    `alive when last seen after ${tenths(lived_s)} s; ${births ? "the interval" : "its generation"} has ended`,
   starved: (lived_s: number) => `died of hunger after ${tenths(lived_s)} s`,
   poisoned: (lived_s: number) => `died of poison after ${tenths(lived_s)} s`,
   eaten_by_predator: (lived_s: number) => `eaten by a predator after ${tenths(lived_s)} s`,
@@ -53,6 +53,7 @@ export const organism_texts = {
   both_parents: ", which was both parents",
   parents: (first: number, second: number, generation: number) =>
     `Parents: ${first} and ${second} (generation ${with_separators(generation)})`,
+  arrived: "No parents: it came at the beginning of this interval",
   born_before: "It was born before this interval",
   child_of_parent: (parent: number) => `Child of organism ${parent} of this interval`,
   child_of_parents: (first: number, second: number) => `Child of organisms ${first} and ${second} of this interval`,

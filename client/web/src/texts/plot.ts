@@ -21,7 +21,8 @@ export const plot_texts = {
   generation: "generation",
   fitness: "fitness",
   best: "best",
-  curve_title: (generation: number) => `Fitness, generation ${shown_number(generation)}`,
+  curve_title: (generation: number, births: boolean) =>
+    `${births ? "Children, interval" : "Fitness, generation"} ${shown_number(generation)}`,
   no_curve: "Fitness: the curve begins when the first generation ends",
   changed: (generation: number, values: string, actor: string) => `generation ${generation}: ${values} by ${actor}`,
   click_shows: (first: number) =>

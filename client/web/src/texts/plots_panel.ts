@@ -1,6 +1,8 @@
 // plots_panel: the panel "Plots" and its plots over generations.
 import {shown_number, three_digits, with_separators} from "./numbers";
 
+const round = (births: boolean): string => (births ? "interval" : "generation");
+
 export const quantity_texts = {
   population: "Population",
   phase: "Phase plot",
@@ -39,8 +41,8 @@ export const figure_texts = {
   selection: {
     title: "Selection of the genes",
     of_one: (gene: string) => `Causes of change in the mean of ${gene}`,
-    y: "gene units per generation",
-    y_of_weights: "weight per generation",
+    y: (births: boolean) => `gene units per ${round(births)}`,
+    y_of_weights: (births: boolean) => `weight per ${round(births)}`,
     change: "change",
     selection: "selection",
     transmission: "transmission",
@@ -65,16 +67,21 @@ export const figure_texts = {
     predators: "predators, mean",
     predators_lowest: "predators, fewest"
   },
-  food: {title: "Food and poison eaten", y: "items per generation", food: "food eaten", poison: "poison eaten"},
+  food: {
+    title: "Food and poison eaten",
+    y: (births: boolean) => `items per ${round(births)}`,
+    food: "food eaten",
+    poison: "poison eaten"
+  },
   values: {title: (gene: string) => `Values of ${gene}`, y: "organisms", organisms: "organisms", none: "…"},
   all_died: (generation: number) => `generation ${generation}: all organisms died before its end`,
   extinction: "all died",
   phase: {
     title: "Prey and predators",
-    prey: "prey, mean of the generation",
-    predators: "predators, mean of the generation",
-    newest: (generation: number, prey: number, predators: number) =>
-      `Circle: generation ${with_separators(generation)}, ${three_digits(prey)} prey, ${
+    prey: "living prey, mean",
+    predators: "living predators, mean",
+    newest: (generation: number, prey: number, predators: number, births: boolean) =>
+      `Circle: ${round(births)} ${with_separators(generation)}, ${three_digits(prey)} prey, ${
         three_digits(predators)} predators. The line leads there; its older parts are paler.`,
   },
 };
@@ -98,10 +105,10 @@ export const plots_panel_texts = {
   save_csv_help: "Saves the history of all islands as a table.",
   save_png: "Save PNG",
   save_png_help: (width: number, height: number) => `Saves the plot as an image of ${width} × ${height} pixels.`,
-  known: (count: number, last: number) =>
-    `${with_separators(count)} ${count === 1 ? "generation" : "generations"}, up to ${shown_number(last)}`,
-  none_ended: "No generation has ended yet",
-  from_second: "Known from the second generation on",
+  known: (count: number, last: number, births: boolean) =>
+    `${with_separators(count)} ${round(births)}${count === 1 ? "" : "s"}, up to ${shown_number(last)}`,
+  none_ended: (births: boolean) => `No ${round(births)} has ended yet`,
+  from_second: (births: boolean) => `Known from the second ${round(births)} on`,
   loading: "…",
   selection_of_all: "Price equation: by how much selection changed the mean of each gene. " +
     "Above 0, organisms with more of it had more offspring.",

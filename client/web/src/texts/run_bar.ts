@@ -5,8 +5,10 @@ export const run_bar_texts = {
   pause: "Pause",
   resume: "Resume",
   run_help: "Runs or pauses the world (Space).",
-  generation: "One generation",
-  generation_help: "Runs the generation to its end, then waits. The next tick breeds the next generation.",
+  generation: (births: boolean) => `One ${births ? "interval" : "generation"}`,
+  generation_help: (births: boolean): string => births ?
+    "Runs the interval to its end, then waits." :
+    "Runs the generation to its end, then waits. The next tick breeds the next generation.",
   replay: "Replay",
   replay_help: "Shows earlier generations of this run, with a time line (P).",
   live: "Live",

@@ -42,7 +42,7 @@ export const timeline_buttons = {
 };
 
 export const generation_field_texts = {
-  label: "generation",
-  help: (first: number, last: number) =>
-    `Type a generation from ${with_separators(first)} to ${with_separators(last)}, and press Enter to show it.`,
+  label: (births: boolean): string => (births ? "interval" : "generation"),
+  help: (first: number, last: number, births: boolean) =>
+    `Type ${births ? "an interval" : "a generation"} from ${with_separators(first)} to ${with_separators(last)}, and press Enter to show it.`,
 };

@@ -3,9 +3,10 @@ import type * as english from "../texts/app";
 
 export const app_texts: typeof english.app_texts = {
   title: (world) => world === "" ? "evod" : `${world} – evod`,
-  about: (has_items) => "Evolution, live: " +
-    (has_items ? "Organismen suchen Futter und meiden Gift; die fittesten haben mehr Kinder." :
-                 "Die fittesten Organismen jeder Generation haben mehr Kinder."),
+  about: (has_items, births) => "Evolution, live: " +
+    (births      ? "Organismen suchen Futter und meiden Gift; gesunde bekommen Kinder." :
+       has_items ? "Organismen suchen Futter und meiden Gift; die fittesten haben mehr Kinder." :
+                   "Die fittesten Organismen jeder Generation haben mehr Kinder."),
   no_world: "Der Server hat noch keine Welt.",
   new_world: "Neue Welt …",
   skip: "Zur Welt springen",

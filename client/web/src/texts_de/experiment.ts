@@ -68,7 +68,8 @@ function life(read: Read): string {
 
 function predators(read: Read): string {
   const count = read.number("predator_count"), from = read.number("predator_from");
-  const when = from > 1 ? `Ab Generation ${with_separators(from)} ` : "";
+  const round = read.choice("reproduction") === "births" ? "Intervall" : "Generation";
+  const when = from > 1 ? `Ab ${round} ${with_separators(from)} ` : "";
   const verb = count === 1 ? "jagt" : "jagen", who = `${with_separators(count)} Räuber`;
   return count === 0 ? "" : ` ${when === "" ? `${who} ${verb} sie.` : `${when}${verb} sie ${who}.`}`;
 }

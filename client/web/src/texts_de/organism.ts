@@ -28,8 +28,8 @@ export const organism_texts: typeof english.organism_texts = {
   body: (radius_px, mass_kg) => `Radius ${tenths(radius_px)} px, Masse ${localised(mass_kg.toFixed(2))} kg`,
 
   alive: (lived_s, health) => `lebt seit ${tenths(lived_s)} s, Gesundheit ${tenths(health)}`,
-  alive_when_last_seen: (lived_s) =>
-    `lebte noch, als er nach ${tenths(lived_s)} s zuletzt zu sehen war; seine Generation ist zu Ende`,
+  alive_when_last_seen: (lived_s, births) => `lebte noch, als er nach ${tenths(lived_s)} s zuletzt zu sehen war; ${
+    births ? "das Intervall" : "seine Generation"} ist zu Ende`,
   starved: (lived_s) => `nach ${tenths(lived_s)} s verhungert`,
   poisoned: (lived_s) => `nach ${tenths(lived_s)} s an Gift gestorben`,
   eaten_by_predator: (lived_s) => `nach ${tenths(lived_s)} s von einem Räuber gefressen`,
@@ -52,6 +52,7 @@ export const organism_texts: typeof english.organism_texts = {
   of_survivors: ": Dieser Organismus hat überlebt",
   both_parents: ", zugleich beide Eltern",
   parents: (first, second, generation) => `Eltern: ${first} und ${second} (Generation ${with_separators(generation)})`,
+  arrived: "Keine Eltern: Er kam am Anfang dieses Intervalls",
   born_before: "Er wurde vor diesem Intervall geboren",
   child_of_parent: (parent) => `Kind von Organismus ${parent} dieses Intervalls`,
   child_of_parents: (first, second) => `Kind der Organismen ${first} und ${second} dieses Intervalls`,

@@ -22,7 +22,8 @@ export const plot_texts: typeof english.plot_texts = {
   generation: "Generation",
   fitness: "Fitness",
   best: "beste",
-  curve_title: (generation) => `Fitness, Generation ${shown_number(generation)}`,
+  curve_title: (generation, births) =>
+    `${births ? "Kinder, Intervall" : "Fitness, Generation"} ${shown_number(generation)}`,
   no_curve: "Fitness: Die Kurve beginnt, wenn die erste Generation endet",
   changed: (generation, values, actor) => `Generation ${generation}: ${values}, von ${actor}`,
   click_shows: (first) => `Ein Klick zeigt diese Generation in einer Wiedergabe${

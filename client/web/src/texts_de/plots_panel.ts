@@ -4,6 +4,8 @@ import type * as english from "../texts/plots_panel";
 import {gene_label} from "./genes";
 import {shown_number, three_digits, with_separators} from "./numbers";
 
+const round = (births: boolean): string => (births ? "Intervall" : "Generation");
+
 export const quantity_texts: typeof english.quantity_texts = {
   population: "Bestand",
   phase: "Phasendiagramm",
@@ -42,8 +44,8 @@ export const figure_texts: typeof english.figure_texts = {
   selection: {
     title: "Selektion der Gene",
     of_one: (gene) => `Ursachen der Änderung des Mittelwerts von ${gene_label(gene)}`,
-    y: "Gen-Einheiten pro Generation",
-    y_of_weights: "Gewicht pro Generation",
+    y: (births) => `Gen-Einheiten pro ${round(births)}`,
+    y_of_weights: (births) => `Gewicht pro ${round(births)}`,
     change: "Änderung",
     selection: "Selektion",
     transmission: "Weitergabe",
@@ -69,15 +71,20 @@ export const figure_texts: typeof english.figure_texts = {
     predators: "Räuber, Mittelwert",
     predators_lowest: "Räuber, wenigste"
   },
-  food: {title: "Gefressenes Futter und Gift", y: "Stück pro Generation", food: "Futter", poison: "Gift"},
+  food: {
+    title: "Gefressenes Futter und Gift",
+    y: (births) => `Stück pro ${round(births)}`,
+    food: "Futter",
+    poison: "Gift"
+  },
   values: {title: (gene) => `Werte von ${gene_label(gene)}`, y: "Organismen", organisms: "Organismen", none: "…"},
   all_died: (generation) => `Generation ${generation}: Alle Organismen starben vor ihrem Ende`,
   extinction: "alle gestorben",
   phase: {
     title: "Beute und Räuber",
-    prey: "Beute, Mittelwert der Generation",
-    predators: "Räuber, Mittelwert der Generation",
-    newest: (generation, prey, predators) => `Kreis: Generation ${with_separators(generation)}, ${
+    prey: "lebende Beute, Mittelwert",
+    predators: "lebende Räuber, Mittelwert",
+    newest: (generation, prey, predators, births) => `Kreis: ${round(births)} ${with_separators(generation)}, ${
       three_digits(prey)} Beutetiere, ${
       three_digits(predators)} Räuber. Die Linie führt dorthin; ihre älteren Teile sind blasser.`,
   },
@@ -102,10 +109,12 @@ export const plots_panel_texts: typeof english.plots_panel_texts = {
   save_csv_help: "Speichert den Verlauf aller Inseln als Tabelle.",
   save_png: "PNG speichern",
   save_png_help: (width, height) => `Speichert das Diagramm als Bild mit ${width} × ${height} Pixeln.`,
-  known: (count, last) =>
-    `${with_separators(count)} ${count === 1 ? "Generation" : "Generationen"}, bis ${shown_number(last)}`,
-  none_ended: "Noch ist keine Generation zu Ende",
-  from_second: "Bekannt ab der zweiten Generation",
+  known: (count, last, births) => `${with_separators(count)} ${round(births)}${
+    count === 1 ? "" :
+      births    ? "e" :
+                  "en"}, bis ${shown_number(last)}`,
+  none_ended: (births) => `Noch ist kein${births ? "" : "e"} ${round(births)} zu Ende`,
+  from_second: (births) => `Bekannt ab ${births ? "dem" : "der"} zweiten ${round(births)}`,
   loading: "…",
   selection_of_all: "Price-Gleichung: wie stark die Selektion den Mittelwert jedes Gens geändert hat. Über 0 hatten " +
     "Organismen mit mehr davon mehr Nachkommen.",

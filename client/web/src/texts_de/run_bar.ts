@@ -6,8 +6,9 @@ export const run_bar_texts: typeof english.run_bar_texts = {
   pause: "Anhalten",
   resume: "Fortsetzen",
   run_help: "Startet die Welt oder hält sie an (Leertaste).",
-  generation: "Eine Generation",
-  generation_help:
+  generation: (births) => (births ? "Ein Intervall" : "Eine Generation"),
+  generation_help: (births) => births ?
+    "Lässt das Intervall bis zu seinem Ende laufen und wartet dann." :
     "Lässt die Generation bis zu ihrem Ende laufen und wartet dann. Der nächste Tick züchtet die nächste.",
   replay: "Wiedergabe",
   replay_help: "Zeigt frühere Generationen dieses Laufs, mit einer Zeitleiste (P).",

@@ -51,7 +51,7 @@ export const timeline_buttons: typeof english.timeline_buttons = {
 };
 
 export const generation_field_texts: typeof english.generation_field_texts = {
-  label: "Generation",
-  help: (first, last) =>
-    `Eine Generation von ${with_separators(first)} bis ${with_separators(last)} eingeben; die Eingabetaste zeigt sie.`,
+  label: (births) => (births ? "Intervall" : "Generation"),
+  help: (first, last, births) => `${births ? "Ein Intervall" : "Eine Generation"} von ${with_separators(first)} bis ${
+    with_separators(last)} eingeben; die Eingabetaste zeigt ${births ? "es" : "sie"}.`,
 };

@@ -99,7 +99,7 @@ export class Selection {
       if (found?.generation !== next.generation || !is_shown) {
         return;
       }
-      const is_born_here = (found.age_s ?? 0) < (found.lived_s ?? 0) + 1e-6;
+      const is_born_here = found.placed_tick !== undefined;
       if (!is_born_here && rank(found) === rank(sought)) {
         this.select(organism);
         this.set_follow(follow);
@@ -142,7 +142,9 @@ export class Selection {
     server.request("get_organism", {world, island, organism})
       .then(
         (info) => {
-          if (is_selected() && island === this.#feed.island) {
+          // With births, another organism has the same id in the next interval.
+          const is_other = info.number !== undefined && info.generation !== this.#feed.snapshot?.generation;
+          if (is_selected() && island === this.#feed.island && !is_other) {
             this.info = info;
             if (this.follow && info.alive !== true) {
               this.#lose();
@@ -153,7 +155,9 @@ export class Selection {
           }
         },
         (error: Refusal) => {
-          if (error.reason === "REASON_ORGANISM_NOT_FOUND" && is_selected()) {
+          // With births, the next interval may already have begun, in which the organism has another id.
+          const has_number = this.info?.number !== undefined;
+          if (error.reason === "REASON_ORGANISM_NOT_FOUND" && is_selected() && !has_number) {
             const {follow} = this;
             this.select(null);
             this.is_lost = follow;
