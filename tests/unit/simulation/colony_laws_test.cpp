@@ -1,11 +1,12 @@
 // Compares colonies with theory: growth, encounters, size and drift of populations whose law has a closed form.
 //
-// Theory assumes that every organism meets every other one equally often. A MixedIsland fulfils this: before every tick, it
-// puts all organisms at new random places. Worlds whose organisms move on their own are used where theory allows it.
+// Theory assumes that every organism meets every other one equally often. A MixedIsland fulfils this: before every
+// tick, it puts all organisms at new random places. Worlds whose organisms move on their own are used where theory
+// allows it.
 //
 // Seeds are literals, so a test always gives the same numbers. Statistical tests allow 4 standard errors: a correct
-// program would fail with 6e-5 of all seeds (two-sided). Other tolerances are stated with their reasons.
-// docs/MODEL.md, "Laws of colonies", contains the measured figures.
+// program would fail with 6e-5 of all seeds (two-sided). Other tolerances are stated with their reasons. docs/MODEL.md,
+// "Laws of colonies", contains the measured figures.
 #include "server/base/inline_executor.h"
 #include "server/simulation/island.h"
 #include "server/simulation/world.h"
@@ -23,6 +24,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -143,8 +145,8 @@ struct Moments {
     }
 };
 
-// Predators find prey in proportion to the product of their numbers. The slope may be 0.1 less or more: of two prey near
-// one predator, only one is eaten, which concerns at most 4 % of the meals here.
+// Predators find prey in proportion to the product of their numbers. The slope may be 0.1 less or more: of two prey
+// near one predator, only one is eaten, which concerns at most 4 % of the meals here.
 TEST(MassAction, MealsGrowWithPreyAndWithPredators) {
     Parameters p = mixed(2000, 2000);
     p.health_loss_per_s = p.predator_health_loss_per_s = 0;
@@ -224,7 +226,11 @@ TEST_P(BranchingTest, SizeHasTheMeanAndTheVarianceOfTheory) {
 
 INSTANTIATE_TEST_SUITE_P(Rates, BranchingTest,
                          testing::Values(BirthsAndDeaths{200, 100}, BirthsAndDeaths{200, 200},
-                                         BirthsAndDeaths{100, 200}));
+                                         BirthsAndDeaths{100, 200}),
+                         [](const auto& rates) {
+                             return "food" + std::to_string(rates.param.food) + "poison" +
+                                    std::to_string(rates.param.poison);
+                         });
 
 // One organism of N has a child, and one dies, both drawn at random (Moran 1958). The chance H that two draws, with
 // replacement, find different alleles falls by the factor 1 − 2/N² per birth.
@@ -380,8 +386,8 @@ TEST(LogisticGrowth, FollowsTheEquationsOfFoodAndHealth) {
     }
 }
 
-// At rest, what prey eat pays for life and births: N = (food_health · food eaten − birth_cost · births) / loss per s. Here
-// organisms move on their own. The size may differ by 2 %, because their stock of health changes a little.
+// At rest, what prey eat pays for life and births: N = (food_health · food eaten − birth_cost · births) / loss per s.
+// Here organisms move on their own. The size may differ by 2 %, because their stock of health changes a little.
 TEST(LogisticGrowth, SizeAtRestIsWhatFoodPaysFor) {
     Parameters p;
     p.reproduction = parameters::Reproduction::Births;
@@ -468,9 +474,9 @@ double correlation(std::span<const double> a, std::span<const double> b, std::si
     return sum / (static_cast<double>(a.size()) - 1) / std::sqrt(of_a.variance * of_b.variance);
 }
 
-// Prey that food limits, and predators that handle their prey (Rosenzweig & MacArthur 1963): their mean numbers may differ
-// by 10 % from the equations, which neglect chance. The peaks of predators follow those of prey by 1/8 to 3/8 of a
-// period.
+// Prey that food limits, and predators that handle their prey (Rosenzweig & MacArthur 1963): their mean numbers may
+// differ by 10 % from the equations, which neglect chance. The peaks of predators follow those of prey by 1/8 to 3/8 of
+// a period.
 TEST(PreyAndPredators, FollowTheEquationsOfRosenzweigAndMacArthur) {
     Parameters p = mixed(2560, 1440);
     p.tick_s = p.birth_every_s = 1.0 / 12;
@@ -535,10 +541,10 @@ TEST(PreyAndPredators, FollowTheEquationsOfRosenzweigAndMacArthur) {
     EXPECT_LE(8 * lag, 3 * period);
 }
 
-// A neutral gene of a colony of constant size: the chance H that two organisms have different alleles falls by
-// V/(B L²) per s, with B births per s, parents of the mean age L, and the variance V of the copies of a gene that an
-// organism leaves: that of its children, or with two parents (their variance + their mean)/4, as half of them inherit it
-// (Hill 1972, Genet. Res. 19, 9). B, L and V are measured. Drift may differ by 15 %; its standard error is 4 to 8 %.
+// A neutral gene of a colony of constant size: the chance H that two organisms have different alleles falls by V/(B L²)
+// per s, with B births per s, parents of the mean age L, and the variance V of the copies of a gene that an organism
+// leaves: that of its children, or with two parents (their variance + their mean)/4, as half of them inherit it (Hill
+// 1972, Genet. Res. 19, 9). B, L and V are measured. Drift may differ by 15 %; its standard error is 4 to 8 %.
 class ColonyDrift : public testing::Test {
   protected:
     static constexpr std::uint64_t begun_s = 400, settled_s = 600, ended_s = 1'800;
@@ -648,8 +654,8 @@ TEST_F(ColonyDrift, OfAColonyFollowsHillsLaw) {
     compare();
 }
 
-// The law assumes that parents and children live independently. Where organisms move on their own, a child is born next to
-// its only parent and eats the same food, which slows drift down.
+// The law assumes that parents and children live independently. Where organisms move on their own, a child is born next
+// to its only parent and eats the same food, which slows drift down.
 TEST_F(ColonyDrift, OfOneParentFollowsHillsLawIfMixed) {
     if (repeats == 1) {
         GTEST_SKIP() << "scripts/test --long: few worlds would say little";
