@@ -655,7 +655,7 @@ TEST_F(ColonyDrift, OfAColonyFollowsHillsLaw) {
 }
 
 // The law assumes that parents and children live independently. Where organisms move on their own, a child is born next
-// to its only parent and eats the same food, which slows drift down.
+// to its only parent, and drift is a quarter slower (docs/MODEL.md).
 TEST_F(ColonyDrift, OfOneParentFollowsHillsLawIfMixed) {
     if (repeats == 1) {
         GTEST_SKIP() << "scripts/test --long: few worlds would say little";
