@@ -81,7 +81,8 @@ bool has_gene_costs(const Parameters& parameters) {
     return std::ranges::any_of(parameters::parameter_registry(), [&](const auto& description) {
         const auto value = description.get(parameters);
         const auto* cost = std::get_if<double>(&value);
-        return description.name.ends_with("_cost") && cost != nullptr && *cost != 0;
+        const bool is_of_gene = description.name.ends_with("_cost") && !description.name.ends_with("birth_cost");
+        return is_of_gene && cost != nullptr && *cost != 0;
     });
 }
 

@@ -30,8 +30,8 @@ TEST_F(Lived, EveryKindOfEventIsConverted) {
         EXPECT_EQ(event.run_id().size(), 32);
         if (event.has_parameters_changed()) {
             EXPECT_THAT(unset_in(event.parameters_changed()),
-                        testing::ElementsAre("changed.max", "changed.min", "changed.pending", "changed.value.choice",
-                                             "changed.value.count", "changed.value.flag"));
+                        testing::ElementsAre("changed.effect", "changed.max", "changed.min", "changed.pending",
+                                             "changed.value.choice", "changed.value.count", "changed.value.flag"));
             EXPECT_EQ(event.parameters_changed().by().user(), "karl");
         }
         if (event.has_change_dropped()) {

@@ -48,7 +48,8 @@ TEST(ParameterMessage, AStateHasAnEffectThatIsNotTheUsual) {
     parameters::ParameterSet set;
     for (const bool has_births : {false, true}) {
         set.active.reproduction = has_births ? parameters::Reproduction::Births : parameters::Reproduction::Generations;
-        for (const auto& state : to_proto(set, nullptr).parameters()) {
+        const auto message = to_proto(set, nullptr);
+        for (const auto& state : message.parameters()) {
             const auto kept = parameters::kept_with_births();
             const bool is_kept = std::ranges::find(kept, state.name()) != kept.end();
             EXPECT_EQ(state.has_effect(), has_births && is_kept) << state.name();

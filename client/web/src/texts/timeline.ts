@@ -44,5 +44,6 @@ export const timeline_buttons = {
 export const generation_field_texts = {
   label: (births: boolean): string => (births ? "interval" : "generation"),
   help: (first: number, last: number, births: boolean) =>
-    `Type ${births ? "an interval" : "a generation"} from ${with_separators(first)} to ${with_separators(last)}, and press Enter to show it.`,
+    `Type ${births ? "an interval" : "a generation"} from ${with_separators(first)} to ${with_separators(last)}, ` +
+    "and press Enter to show it.",
 };

@@ -18,9 +18,9 @@ export const glass_box_texts: typeof english.glass_box_texts = {
   problem: (problem) => `${problem}.`,
   retry: "Noch einmal",
   no_snapshot: "Warten auf die erste Momentaufnahme …",
-  births: "In dieser Welt wird keine Generation gezüchtet: Organismen bekommen Kinder, während sie leben. Der " +
-    "Bereich „Organismus“ nennt die Eltern eines Organismus. Das Diagramm „Selektion“ zeigt, warum sich die Mittelwerte der " +
-    "Gene ändern.",
+  births: "In dieser Welt wird keine Generation gezüchtet: Organismen bekommen Kinder, während sie leben. " +
+    "Der Bereich „Organismus“ nennt die Eltern eines Organismus. Das Diagramm „Selektion“ zeigt, " +
+    "warum sich die Mittelwerte der Gene ändern.",
   nothing_bred:
     "Noch hat sich keine Generation fortgepflanzt. Die erste tut es, wenn sie endet und die nächste beginnt.",
   loading: "Wird geladen …",
