@@ -38,15 +38,16 @@ struct StoredGeneration {
 using Stretch = std::vector<StoredGeneration>;
 
 /// Whether a stored beginning is valid, which the core assumes. An invalid beginning differs from the result of the
-/// previous generation and is reported as that difference.
+/// previous generation and is reported as that difference. Organisms that live on may have genes outside the present
+/// bounds; reading the file has checked them.
 bool can_be_simulated(const StoredGeneration& generation) {
     const parameters::Parameters& parameters = generation.opening.parameters.active;
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
     return std::ranges::all_of(generation.born, [&](const NextGeneration& born) {
-        const bool fits = !generation.openings.empty() ||
-                          born.genes.cols() == Eigen::Index{parameters.population_size} + born.predator_count;
-        return fits && born.genes.rows() == bounds.min.rows() &&
-               ((born.genes.colwise() - bounds.min >= 0) && (born.genes.colwise() - bounds.max <= 0)).all();
+        return born.genes.rows() == bounds.min.rows() &&
+               (!generation.openings.empty() ||
+                (born.genes.cols() == Eigen::Index{parameters.population_size} + born.predator_count &&
+                 ((born.genes.colwise() - bounds.min >= 0) && (born.genes.colwise() - bounds.max <= 0)).all()));
     });
 }
 

@@ -13,17 +13,11 @@ constexpr std::uint32_t tick_reachable = 1U << 30;
 /// As in world_state.cpp.
 constexpr float health_reachable = 0x1p38F, gene_reachable = 1e12F;
 
-bool are_in_order(std::span<const std::uint32_t> numbers) {
-    return std::ranges::adjacent_find(numbers, std::ranges::greater_equal{}) == numbers.end();
-}
-
-/// Whether each organism has a number of its own, below the next one: first the prey in order, then the predators.
+/// Whether each organism has a number of its own, below the next one.
 bool are_numbers(const IslandOpening& opening) {
-    const std::span numbers{opening.numbers};
-    std::vector<std::uint32_t> sorted{numbers.begin(), numbers.end()};
+    std::vector<std::uint32_t> sorted = opening.numbers;
     std::ranges::sort(sorted);
-    return are_in_order(numbers.first(numbers.size() - opening.predator_count)) &&
-           are_in_order(numbers.last(opening.predator_count)) && are_in_order(sorted) &&
+    return std::ranges::adjacent_find(sorted) == sorted.end() &&
            (sorted.empty() || sorted.back() < opening.next_number);
 }
 
@@ -54,6 +48,11 @@ const char* fault_of(const IslandOpening& opening, const evolution::NextGenerati
         opening.predator_count > organisms || opening.predator_count != bred.predator_count ||
         (opening.predator_count > 0 && parameters.predator_count == 0) || !are_numbers(opening)) {
         return "number of an organism";
+    }
+    for (Eigen::Index id = 0; id < bred.genes.cols(); ++id) {
+        if (!can_live_with(evolution::column(bred.genes, id))) {
+            return "gene of an organism";
+        }
     }
     if (!are_records(state.life_records, organisms) || state.counts != IslandCounts{} ||
         state.colony != std::array<ColonyCounts, 2>{} || !state.placed.empty() || state.placed_food > 0 ||

@@ -82,13 +82,17 @@ IslandState Island::state(base::Executor& executor) const {
     return state;
 }
 
+bool can_live_with(evolution::ConstGenes genes) {
+    const auto is_body_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
+    return std::ranges::all_of(genes.first<evolution::body_gene_count>(), is_body_gene) &&
+           std::ranges::all_of(genes, [](float gene) { return std::isfinite(gene); }) &&
+           genes[evolution::BodySize] > 0 && genes[evolution::BodySize] <= body_size_reachable;
+}
+
 const char* Island::fault_of_arrivals(const IslandState& state, std::uint32_t tick) const {
     for (const IslandState::Placed& placed : state.placed) {
-        const auto is_body_gene = [](float gene) { return gene >= 0 && gene <= gene_reachable; };
         if (placed.tick > tick || placed.genes.size() != static_cast<std::size_t>(born_.genes.rows()) ||
-            !std::ranges::all_of(std::span{placed.genes}.first<evolution::body_gene_count>(), is_body_gene) ||
-            !std::ranges::all_of(placed.genes, [](float gene) { return std::isfinite(gene); }) ||
-            placed.genes[evolution::BodySize] <= 0 || placed.genes[evolution::BodySize] > body_size_reachable) {
+            !can_live_with(placed.genes)) {
             return "a placed organism";
         }
         const auto id = std::size_t{shape().organisms} + static_cast<std::size_t>(&placed - state.placed.data());

@@ -52,6 +52,9 @@ struct ColonyCounts {
     friend bool operator==(const ColonyCounts&, const ColonyCounts&) = default;
 };
 
+/// Whether an organism can have these genes, whatever their bounds were when it was born.
+bool can_live_with(evolution::ConstGenes genes);
+
 /// The number of entities of each kind on an island at the beginning of a generation. It determines the shape of the
 /// island's state, together with the numbers of placed entities.
 struct IslandShape {
