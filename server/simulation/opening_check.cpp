@@ -49,7 +49,7 @@ const char* fault_of(const IslandOpening& opening, const evolution::NextGenerati
         (opening.predator_count > 0 && parameters.predator_count == 0) || !are_numbers(opening)) {
         return "number of an organism";
     }
-    for (Eigen::Index id = 0; id < bred.genes.cols(); ++id) {
+    for (std::uint32_t id = 0; id < organisms; ++id) {
         if (!can_live_with(evolution::column(bred.genes, id))) {
             return "gene of an organism";
         }
