@@ -6,7 +6,7 @@ namespace {
 // Measured: the columns of an entity without its genes, with its places in the grids; the rest of an island and a
 // world.
 constexpr std::size_t bytes_per_organism = 40, bytes_per_body = 92, bytes_per_item = 40, bytes_per_box = 160;
-constexpr std::size_t bytes_per_island = 25'000, bytes_per_world = 10'000;
+constexpr std::size_t bytes_per_island = 25'000, bytes_per_world = 20'000;
 
 std::size_t bytes_of(const Island& island) {
     return bytes_per_island + static_cast<std::size_t>(island.born().genes.cols()) * bytes_per_organism +

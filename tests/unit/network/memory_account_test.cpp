@@ -236,10 +236,11 @@ TEST(ReplayAccount, OfItsWorld) {
         std::uint32_t population, islands, hidden;
         bool scaled;
         int generations;
+        std::uint32_t predators = 0; // with births
     };
     for (const Case& of : {Case{50, 1, 0, false, 2}, Case{20'000, 1, 0, true, 1}, Case{2000, 1, 8, true, 1},
                            Case{2000, 1, 32, true, 1}, Case{2000, 1, 0, true, 1}, Case{200, 1, 0, true, 1},
-                           Case{30, 100, 0, false, 2}, Case{50, 1, 0, false, 400}}) {
+                           Case{30, 100, 0, false, 2}, Case{50, 1, 0, false, 400}, Case{2000, 1, 0, true, 2, 300}}) {
         parameters::Parameters parameters;
         parameters.population_size = of.population;
         parameters.island_count = of.islands;
@@ -248,6 +249,10 @@ TEST(ReplayAccount, OfItsWorld) {
         if (of.hidden > 0) {
             parameters.controller = evolution::Controller::Network;
             parameters.brain_hidden = of.hidden;
+        }
+        if (of.predators > 0) {
+            parameters.reproduction = parameters::Reproduction::Births;
+            parameters.predator_count = of.predators;
         }
         const Truth truth;
         simulation::World world{parameters, base::Seed{1}};
