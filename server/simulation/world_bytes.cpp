@@ -3,13 +3,15 @@
 namespace evod::simulation {
 namespace {
 
-// Measured: the columns of an entity without its genes, with its places in the grids; the rest of an island and a
-// world.
+// Measured: the columns of an entity without its genes, with its places in the grids; what an organism of a colony has
+// besides; the rest of an island and a world.
 constexpr std::size_t bytes_per_organism = 40, bytes_per_body = 92, bytes_per_item = 40, bytes_per_box = 160;
+constexpr std::size_t bytes_in_colony = 280;
 constexpr std::size_t bytes_per_island = 25'000, bytes_per_world = 20'000;
 
 std::size_t bytes_of(const Island& island) {
-    return bytes_per_island + static_cast<std::size_t>(island.born().genes.cols()) * bytes_per_organism +
+    const std::size_t per_organism = bytes_per_organism + (island.is_colony() ? bytes_in_colony : 0);
+    return bytes_per_island + static_cast<std::size_t>(island.born().genes.cols()) * per_organism +
            static_cast<std::size_t>(island.born().genes.size()) * sizeof(float) +
            island.bodies().size() * bytes_per_body +
            (std::size_t{island.food().size()} + island.poison().size()) * bytes_per_item +
