@@ -111,10 +111,10 @@ BredIslands LocalIslands::bred_with_predators(const parameters::Parameters& para
                     parents = {ids[i][parents.first], ids[i][parents.second]};
                 }
             }
-            if (is_predator) {
-                append(bred.islands[i], next);
-            } else {
+            if (!is_predator) {
                 bred.islands[i] = std::move(next);
+            } else if (next.genes.cols() > 0) { // otherwise they have not yet arrived
+                append(bred.islands[i], next);
             }
         }
     }

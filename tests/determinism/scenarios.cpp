@@ -192,7 +192,7 @@ const std::vector<Scenario>& all() {
           {600, R"({"shuffle_births": false, "flee_certain_impulse": 50})"}}},
 
         {"predators_with_generations", // both species are bred, each with its own operators
-         R"({"island_count": 2, "population_size": 50, "predator_count": 10, "predator_from": 2, "generation_s": 3,
+         R"({"island_count": 2, "population_size": 50, "predator_count": 10, "predator_from": 3, "generation_s": 2,
              "handling_s": 0.5, "predator_selection": "tournament", "predator_elite_count": 1,
              "predator_mutation_chance": 0.5, "selection": "truncation", "migration": "ring", "migration_epoch": 1})",
          base::Seed{62},
