@@ -39,7 +39,7 @@ const std::map<std::string, std::string> golden_hashes = {
     {"kinematic_networks", "18b6c4aa2ddd3278ab0454fdb6f6c08e"},
     {"sexual_births", "c15efbe4c1fa93199f9bed82f12f419c"},
     {"predators_and_prey", "2264497befe03a0ab74b7ebbbde7d7f1"},
-    {"predators_with_generations", "299f78cec5bc093f1f081a43bfd35e30"},
+    {"predators_with_generations", "a259ebef2c7f152c331e8fb01aa08f34"},
     {"births_of_unselected_parents", "3651c413a6113e8f0970a470f7ca0b4e"},
     {"colony_of_thousands", "99be289c418fa90988a699663654d222"},
 };
