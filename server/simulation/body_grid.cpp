@@ -23,7 +23,7 @@ void BodyGrid::build(const physics::Circles& circles, std::span<const std::uint3
     for (const std::uint32_t i : members) {
         sorted_[starts_[cell_of(i)]++] = i;
     }
-    std::ranges::rotate(starts_, starts_.end() - 1);
+    std::rotate(starts_.begin(), starts_.end() - 1, starts_.end());
     starts_.front() = 0;
 }
 

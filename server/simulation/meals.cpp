@@ -225,7 +225,8 @@ base::StateHash Island::eat_prey(const parameters::Parameters& parameters, std::
         }
     }
     std::ranges::sort(claims, {}, [](const Claim& claim) { return std::tuple{claim.prey, claim.square, claim.id}; });
-    claims.erase(std::ranges::unique(claims, {}, &Claim::prey).begin(), claims.end());
+    const auto is_same_prey = [](const Claim& a, const Claim& b) { return a.prey == b.prey; };
+    claims.erase(std::unique(claims.begin(), claims.end(), is_same_prey), claims.end());
 
     const auto handling_ticks = static_cast<std::uint32_t>(std::ceil(parameters.handling_s / parameters.tick_s - 1e-6));
     Block block;
