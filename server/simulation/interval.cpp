@@ -1,6 +1,8 @@
 // Intervals: what an island with births hands over from one interval to the next (colony.h).
 #include "server/simulation/island.h"
 
+#include "server/base/elementary.h"
+
 #include <algorithm>
 
 namespace evod::simulation {

@@ -42,15 +42,6 @@ LocalIslands::LocalIslands(base::Seed seed, base::Range indices) : seed_{seed}, 
     summaries_.resize(islands_.size());
 }
 
-template <class Body>
-void LocalIslands::for_each_island(base::Executor& executor, Body&& body) const {
-    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i) {
-            body(i);
-        }
-    });
-}
-
 void LocalIslands::summarise(bool at_first_moment) {
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         const Island& island = islands_[i];

@@ -67,7 +67,13 @@ class LocalIslands final : public Islands {
   private:
     /// Calls body(i) for every element i of islands_, on the threads of the executor.
     template <class Body>
-    void for_each_island(base::Executor& executor, Body&& body) const;
+    void for_each_island(base::Executor& executor, Body&& body) const {
+        executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                body(i);
+            }
+        });
+    }
     void use(std::span<const Rating> given, const parameters::Parameters& parameters);
     /// The chromosomes from which element i of islands_ breeds.
     const evolution::GeneMatrix& breeding_genes(std::size_t i) const;
