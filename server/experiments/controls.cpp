@@ -1,5 +1,7 @@
 #include "server/experiments/controls.h"
 
+#include "server/evolution/gene_layout.h"
+
 #include <algorithm>
 #include <span>
 #include <string_view>

@@ -1,6 +1,7 @@
 #include "server/replay/columns.h"
 
 #include "server/evolution/chromosome.h"
+#include "server/parameters/model_parameters.h"
 #include "server/protocol/gene_list.h"
 
 namespace evod::replay {
