@@ -60,7 +60,7 @@ TEST(RandomCommands, IncludeEveryCommandAndParameter) {
     RandomCommands random{draws};
     Twins twins;
     std::uint64_t runs = 0;
-    for (int batch = 0; batch < 12'000; ++batch) {
+    for (int batch = 0; batch < 20'000; ++batch) {
         for (const v1::Request& request : random.next(twins)) {
             const auto command = protocol::to_command(request, {.seed = {}, .run_id = {++runs, 1}});
             ASSERT_TRUE(command) << to_text(command.error());

@@ -40,7 +40,7 @@ RC_GTEST_PROP(EverySetThatIsAccepted, HasRoomForAllBodies, ()) {
 
 World small_world() {
     parameters::Parameters p;
-    p.generation_s = 0.1;
+    p.generation_s = p.birth_every_s = 0.1;
     return {p, base::Seed{1}};
 }
 
