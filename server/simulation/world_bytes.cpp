@@ -7,7 +7,7 @@ namespace {
 // besides; the rest of an island and a world.
 constexpr std::size_t bytes_per_organism = 40, bytes_per_body = 92, bytes_per_item = 40, bytes_per_box = 160;
 constexpr std::size_t bytes_in_colony = 280;
-constexpr std::size_t bytes_per_island = 25'000, bytes_per_world = 20'000;
+constexpr std::size_t bytes_per_island = 25'000, bytes_per_world = 18'500;
 
 std::size_t bytes_of(const Island& island) {
     const std::size_t per_organism = bytes_per_organism + (island.is_colony() ? bytes_in_colony : 0);
