@@ -1,9 +1,9 @@
 // Colony: a world with births or with two species, and what an island hands over from one generation to the next.
 //
 // With births, a generation is an interval: nothing happens to the organisms when it ends. The living keep their
-// places, health and ages, and get new ids: first the prey, then the predators, each in the order of their previous ids.
-// A migrant gets the id of the organism that it replaces. An organism has one number on its island for its whole life.
-// What begins an interval is an IslandOpening, from which the interval is computed again at any time.
+// places, health and ages, and get new ids: first the prey, then the predators, each in the order of their previous
+// ids. A migrant gets the id of the organism that it replaces. An organism has one number on its island for its whole
+// life. What begins an interval is an IslandOpening, from which the interval is computed again at any time.
 //
 // Determinism  an opening is a function of the state at the end of the interval before it.
 #pragma once
