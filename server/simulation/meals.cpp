@@ -181,8 +181,8 @@ void Island::record_death(Block& block, std::uint32_t body, std::uint32_t tick, 
 
 // Predation. A predator that handles no prey claims the nearest living prey that it reaches; equal distances: the
 // lowest id. It reaches a little beyond its body, because contacts push bodies apart until they just do not touch. A
-// prey that several predators claim goes to the nearest of them; the others get nothing. Prey that poison, hunger or
-// age has killed in the same tick are dead already.
+// prey that several predators claim goes to the nearest of them; the others get nothing. Prey that died of poison,
+// starvation or age in the same tick are dead already.
 
 std::uint32_t Island::reached_prey(std::uint32_t predator, std::uint32_t tick) const {
     if (bodies_.is_void(predator) || living_.hunts_from[predator] > tick) {

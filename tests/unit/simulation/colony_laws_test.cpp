@@ -244,7 +244,7 @@ TEST(MoranDrift, HeterozygosityFallsByTheLaw) {
     std::vector<double> heterozygosities;
     for (std::uint64_t world = 1; world <= worlds; ++world) {
         evolution::GeneMatrix genes = equal_genes(organisms, 20);
-        genes.row(evolution::PoisonRadius).head(organisms / 2) = 50; // neutral: there is no poison
+        genes.row(evolution::PoisonRadius).head(organisms / 2) = 50; // neutral: the world has no poison
         MixedIsland mixed{p, world, genes, 0};
         base::RandomStream random{base::RandomKey{base::Seed{world}, base::Purpose::BirthParents, 0, 0}, 0};
         for (int i = 0; i < births; ++i) {
@@ -353,7 +353,7 @@ class PreyEquations {
     std::size_t now_ = 0;
 };
 
-// Prey that nothing but hunger kills grow until they find no more food than they need. The mean of 20 worlds may differ
+// Prey that only starvation kills grow until they find no more food than they need. The mean of 20 worlds may differ
 // by 5 % from the equations of food and health, which neglect chance (everyday: of 4 worlds).
 TEST(LogisticGrowth, FollowsTheEquationsOfFoodAndHealth) {
     Parameters p = mixed(1280, 720);
