@@ -9,7 +9,7 @@ namespace evod::simulation {
 
 /// Returns why an interval cannot begin with this opening; nullptr if it can.
 ///
-/// bred        the organisms of the island; their chromosomes have been checked.
+/// bred        the organisms of the island.
 /// parameters  with which the interval begins; valid.
 const char* fault_of(const IslandOpening& opening, const evolution::NextGeneration& bred,
                      const parameters::Parameters& parameters);
