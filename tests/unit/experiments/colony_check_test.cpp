@@ -1,5 +1,5 @@
 // Checks that the presets with births persist, and that prey evolve to escape. docs/MODEL.md, "Do colonies last?", has
-// the figures. Everyday: few seeds and intervals; `ctest -R long.colonies` runs all (20 minutes on two cores).
+// the figures. Everyday: few seeds and intervals; `ctest -R long.colonies` runs all.
 //
 // Runs of different seeds take place in parallel, each on one thread.
 #include "server/base/inline_executor.h"
