@@ -7,6 +7,7 @@
 #include "server/run_file/run_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -42,6 +44,15 @@ Result<void> sync(const std::string& path) {
         return cannot("write", path, std::strerror(why));
     }
     return {};
+}
+
+/// The device and the inode of the file that has this name now, or nothing.
+std::optional<std::pair<dev_t, ino_t>> file_with_name(const std::string& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) {
+        return std::nullopt;
+    }
+    return std::pair{status.st_dev, status.st_ino};
 }
 
 /// A new folder next to the copy, which becomes the copy; without keep(), it is deleted with everything in it. Nothing
@@ -133,10 +144,10 @@ class Copier {
     }
 
   private:
-    enum class Outcome { Missing, Known, Failed, Ended, Live };
+    enum class Outcome { Missing, Renamed, Known, Failed, Ended, Live };
 
-    /// Copies the present run of a world. If that run turns out to have ended, a reset is replacing it: then the run
-    /// that follows it has the name NAME.evod-next or NAME.evod.
+    /// Copies the present run of a world. If that run turns out to have ended or to have been renamed, a reset is
+    /// replacing it: then the run that follows it has the name NAME.evod-next or NAME.evod.
     Result<void> copy_world(const std::string& path) {
         const std::string next = DataFolder::next_file_of(path);
         for (int misses = 0; misses < 2; ++misses) { // the second time, because of a renaming between two looks
@@ -148,7 +159,7 @@ class Copier {
                 if (*outcome == Outcome::Live || *outcome == Outcome::Failed) {
                     return {};
                 }
-                if (*outcome == Outcome::Ended) {
+                if (*outcome == Outcome::Ended || *outcome == Outcome::Renamed) {
                     misses = -1;
                 }
             }
@@ -168,17 +179,18 @@ class Copier {
     ///
     /// path  the name that the file of a run that has not ended gets.
     Result<Outcome> copy_run(const std::string& name_now, const std::string& path) {
-        auto file = RunFile::open_checked(name_now);
-        if (!file) {
-            const bool is_being_created = name_now != path;
-            std::error_code error;
-            if (is_being_created || file.error().code == RefusalCode::NotFound) {
-                return Outcome::Missing;
-            }
-            return failed(file.error());
+        const auto found = file_with_name(name_now);
+        if (!found) {
+            return Outcome::Missing;
         }
-        if (auto pinned = (*file)->pin_snapshot(); !pinned) {
-            return failed(pinned.error());
+        auto file = RunFile::open_checked(name_now);
+        const auto pinned = file ? (*file)->pin_snapshot() : file.error();
+        if (file_with_name(name_now) != found) { // the log that was opened may belong to the other file
+            return Outcome::Renamed;
+        }
+        if (!pinned) {
+            const bool is_being_created = name_now != path;
+            return is_being_created ? Outcome::Missing : failed(pinned.error());
         }
         const std::string run_id = to_text((*file)->identity().run_id);
         if (runs_.contains(run_id)) {
