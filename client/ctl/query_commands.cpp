@@ -346,9 +346,9 @@ std::string choice_text(const v1::OrganismInfo& info) {
     case v1::CHOICE_WANDER:
         return "wanders";
     case v1::CHOICE_SEEK:
-        return "seeks food" + target;
+        return (info.species() == v1::SPECIES_PREDATOR ? "hunts prey" : "seeks food") + target;
     case v1::CHOICE_FLEE:
-        return "flees from poison" + target;
+        return (info.flees_predator() ? "flees from the predator" : "flees from poison") + target;
     case v1::CHOICE_STEER:
         return "steers with its neural network";
     default:

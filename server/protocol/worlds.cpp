@@ -257,12 +257,13 @@ namespace {
 
 /// Sets what only organisms of colonies have.
 void set_colony(const simulation::World& world, const simulation::Island& island, std::uint32_t id,
-                v1::OrganismInfo& to) {
+                const simulation::Intention& intention, v1::OrganismInfo& to) {
     const double tick_s = world.parameters().active.tick_s;
     const auto tick = static_cast<std::uint32_t>(world.moment().generation_tick);
     if (island.species_of(id) == simulation::Species::Predator) {
         to.set_species(v1::SPECIES_PREDATOR);
     }
+    to.set_flees_predator(intention.flees_predator);
     if (island.has_births()) {
         to.set_number(island.number_of(id));
         to.set_age_s(island.age_ticks(id, tick) * tick_s);
@@ -323,7 +324,7 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
         set_brain(island.brain(), *activations, *to.mutable_brain());
     }
     if (island.is_colony()) {
-        set_colony(world, island, id, to);
+        set_colony(world, island, id, intention, to);
     }
     const simulation::LifeRecords& life_records = island.life_records();
     to.set_food_eaten(life_records.food_eaten[id]);

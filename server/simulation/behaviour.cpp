@@ -213,7 +213,8 @@ void predict_intentions(const physics::Circles& bodies, const LivingOrganisms& l
                          const auto [x, y] = choice == Choice::Flee   ? Place{few.poison.x[k], few.poison.y[k]}
                                              : choice == Choice::Seek ? Place{few.food.x[k], few.food.y[k]}
                                                                       : Place{few.x[k], few.y[k]};
-                         intentions[begin + k] = {choice, forces.x[k], forces.y[k], x, y};
+                         intentions[begin + k] = {choice, forces.x[k], forces.y[k],
+                                                  x,      y,           choice == Choice::Flee && few.is_hunted[k] != 0};
                      }
                  });
 }

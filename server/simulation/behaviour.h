@@ -68,7 +68,8 @@ void live_and_steer(const OrganismColumns& columns, LivingOrganisms& living, con
 struct Intention {
     Choice choice = Choice::None;                   // None: the organism is dead or has no body
     float force_x = 0, force_y = 0;                 // kg px/s²
-    physics::Coordinate target_x = 0, target_y = 0; // position of the food or poison; otherwise its own position
+    physics::Coordinate target_x = 0, target_y = 0; // position of the item or organism; otherwise its own position
+    bool flees_predator = false;                    // Flee: from a predator, not from poison
 };
 
 /// Predicts what the organisms of `bodies_asked` will choose in `tick` if no item reappears before it. Changes nothing.

@@ -10,8 +10,6 @@ namespace {
 
 /// No tick of an interval is later; longer times are impossible, too.
 constexpr std::uint32_t tick_reachable = 1U << 30;
-/// As in world_state.cpp.
-constexpr float health_reachable = 0x1p38F, gene_reachable = 1e12F;
 
 /// Whether each organism has a number of its own, below the next one.
 bool are_numbers(const IslandOpening& opening) {
@@ -29,11 +27,6 @@ bool are_records(const LifeRecords& records, std::size_t organisms) {
            std::ranges::all_of(records.cause, [](CauseOfDeath cause) { return cause == CauseOfDeath::Alive; }) &&
            all_zero(records.lived_ticks) && all_zero(records.food_eaten) && all_zero(records.poison_eaten) &&
            records.children.size() == organisms;
-}
-
-bool are_latest_births(std::span<const float> genes, std::size_t gene_count) {
-    return genes.size() % gene_count == 0 &&
-           std::ranges::all_of(genes, [](float gene) { return std::abs(gene) <= gene_reachable; });
 }
 
 } // namespace
@@ -59,13 +52,11 @@ const char* fault_of(const IslandOpening& opening, const evolution::NextGenerati
         state.placed_poison > 0) {
         return "life of an organism";
     }
-    const float speed_max = static_cast<float>(parameters.max_speed_px_s) * 1.001F;
-    const auto can_move = [&](const auto& body) {
-        return body.x >= 0 && body.x <= width && body.y >= 0 && body.y <= height &&
-               body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
+    const auto moves = [&](const auto& body) {
+        return can_move(body, width, height, static_cast<float>(parameters.max_speed_px_s));
     };
     const auto lives = [&](const IslandState::Organism& organism) {
-        return can_move(organism) && organism.health > 0 && organism.health <= health_reachable;
+        return moves(organism) && organism.health > 0 && organism.health <= health_reachable;
     };
     if (state.organisms.size() != organisms || !std::ranges::all_of(state.organisms, lives)) {
         return "position, speed or health of an organism";
@@ -82,7 +73,7 @@ const char* fault_of(const IslandOpening& opening, const evolution::NextGenerati
                             [](std::uint32_t tick) { return tick > 0; })) {
         return "handling of a meal";
     }
-    if (state.crates.size() != parameters.crate_count || !std::ranges::all_of(state.crates, can_move)) {
+    if (state.crates.size() != parameters.crate_count || !std::ranges::all_of(state.crates, moves)) {
         return "crate";
     }
     const auto is_item = [&](const Items::Item& item) {
@@ -93,9 +84,8 @@ const char* fault_of(const IslandOpening& opening, const evolution::NextGenerati
         return "item";
     }
     const auto genes = static_cast<std::size_t>(bred.genes.rows());
-    return are_latest_births(state.latest_born[0], genes) && are_latest_births(state.latest_born[1], genes)
-               ? nullptr
-               : "latest birth";
+    const auto are_born = [&](const std::vector<float>& latest) { return are_chromosomes(latest, genes); };
+    return std::ranges::all_of(state.latest_born, are_born) ? nullptr : "latest birth";
 }
 
 } // namespace evod::simulation

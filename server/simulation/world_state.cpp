@@ -14,9 +14,6 @@
 namespace evod::simulation {
 namespace {
 
-/// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
-/// so large a float.
-constexpr float health_reachable = 0x1p38f;
 /// No parameter allows a gene of the body, or the gene body_size, above these values.
 constexpr float gene_reachable = 10'000, body_size_reachable = 1'000;
 
@@ -89,6 +86,15 @@ bool can_live_with(evolution::ConstGenes genes) {
            genes[evolution::BodySize] > 0 && genes[evolution::BodySize] <= body_size_reachable;
 }
 
+bool are_chromosomes(std::span<const float> genes, std::size_t gene_count) {
+    for (; genes.size() >= gene_count; genes = genes.subspan(gene_count)) {
+        if (!can_live_with(genes.first(gene_count))) {
+            return false;
+        }
+    }
+    return genes.empty();
+}
+
 const char* Island::fault_of_arrivals(const IslandState& state, std::uint32_t tick) const {
     for (const IslandState::Placed& placed : state.placed) {
         if (placed.tick > tick || placed.genes.size() != static_cast<std::size_t>(born_.genes.rows()) ||
@@ -102,8 +108,7 @@ const char* Island::fault_of_arrivals(const IslandState& state, std::uint32_t ti
         }
     }
     for (const std::vector<float>& latest : state.latest_born) {
-        if (latest.size() % static_cast<std::size_t>(born_.genes.rows()) != 0 ||
-            !std::ranges::all_of(latest, [](float gene) { return std::isfinite(gene); })) {
+        if (!are_chromosomes(latest, static_cast<std::size_t>(born_.genes.rows()))) {
             return "the latest births";
         }
     }
@@ -135,11 +140,8 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
         return wrong("number of crates");
     }
 
-    // Every tick limits the speeds at its end, so a greater speed can only be a rounding error.
-    const float speed_max = step_parameters_.max_speed_px_s * 1.001f;
-    const auto can_move = [&](const auto& body) {
-        return body.x >= 0 && body.x <= area_.width && body.y >= 0 && body.y <= area_.height &&
-               body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
+    const auto moves = [&](const auto& body) {
+        return can_move(body, area_.width, area_.height, step_parameters_.max_speed_px_s);
     };
     std::uint32_t alive = 0, starved = 0, poisoned = 0;
     for (std::size_t id = 0; id < organisms; ++id) {
@@ -153,7 +155,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
             }
             ++alive;
             const IslandState::Organism& organism = state.organisms[id];
-            if (!can_move(organism)) {
+            if (!moves(organism)) {
                 return which("position or speed");
             }
             if (own.has_headings && !(std::abs(state.headings[id]) <= heading_max)) {
@@ -180,7 +182,7 @@ base::Result<void> Island::check(const IslandState& state, std::uint32_t tick) c
     if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
         return wrong("number of dead organisms");
     }
-    if (!std::ranges::all_of(state.crates, can_move)) {
+    if (!std::ranges::all_of(state.crates, moves)) {
         return wrong("position or speed of a crate");
     }
     if (state.food.size() != std::size_t{own.food} + state.placed_food ||

@@ -16,7 +16,9 @@
 #include "server/simulation/statistics.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace evod::simulation {
@@ -52,8 +54,23 @@ struct ColonyCounts {
     friend bool operator==(const ColonyCounts&, const ColonyCounts&) = default;
 };
 
+/// Meals cannot raise health above this value: a meal gives at most 10,000, which is lost to rounding if it is added to
+/// so large a float.
+constexpr float health_reachable = 0x1p38f;
+
 /// Whether an organism can have these genes, whatever their bounds were when it was born.
 bool can_live_with(evolution::ConstGenes genes);
+/// Whether these are chromosomes of organisms, one after the other.
+bool are_chromosomes(std::span<const float> genes, std::size_t gene_count);
+
+/// Whether a tick can have left a body, which has x, y, velocity_x and velocity_y, on an island of this size.
+template <class Body>
+bool can_move(const Body& body, physics::Coordinate width, physics::Coordinate height, float max_speed_px_s) {
+    // Every tick limits the speeds at its end, so a greater speed can only be a rounding error.
+    const float speed_max = max_speed_px_s * 1.001f;
+    return body.x >= 0 && body.x <= width && body.y >= 0 && body.y <= height &&
+           body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
+}
 
 /// The number of entities of each kind on an island at the beginning of a generation. It determines the shape of the
 /// island's state, together with the numbers of placed entities.

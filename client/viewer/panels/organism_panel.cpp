@@ -73,7 +73,7 @@ std::string shown_choice(const evod::v1::OrganismInfo& info) {
     case evod::v1::CHOICE_SEEK:
         return (info.species() == evod::v1::SPECIES_PREDATOR ? "about to hunt prey" : "about to seek food") + place;
     case evod::v1::CHOICE_FLEE:
-        return print("about to flee from (%.0f, %.0f)", info.target_x_px(), info.target_y_px());
+        return (info.flees_predator() ? "about to flee from the predator" : "about to flee from poison") + place;
     case evod::v1::CHOICE_STEER:
         return "steered by its network";
     default:

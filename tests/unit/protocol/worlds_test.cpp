@@ -107,7 +107,7 @@ TEST_F(Lived, AnOrganismIsConvertedCompletely) {
     // not every organism eats or dies in a quarter of a second
     never.erase("poison_eaten"), never.erase("cause_of_death");
     never.erase("placed_tick"); // no command has placed an organism
-    for (const char* const of_colonies : {"species", "number", "age_s", "children", "handling_s"}) {
+    for (const char* const of_colonies : {"species", "number", "age_s", "children", "handling_s", "flees_predator"}) {
         never.erase(of_colonies);
     }
     EXPECT_THAT(never, testing::UnorderedElementsAre("brain", "heading")) << "of organisms with a network";

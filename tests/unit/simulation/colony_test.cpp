@@ -204,6 +204,7 @@ TEST_F(QuietIsland, PreyFleesAndPredatorsSeek) {
     const std::vector<Intention> intentions = island.intentions(parameters, now + 1, {0, 2});
     EXPECT_EQ(intentions[0].choice, Choice::Flee);
     EXPECT_LT(intentions[0].force_x, 0);
+    EXPECT_TRUE(intentions[0].flees_predator);
     EXPECT_EQ(intentions[1].choice, Choice::Seek);
     EXPECT_LT(intentions[1].force_x, 0);
     EXPECT_EQ(intentions[1].target_x, physics::to_units(100.0));

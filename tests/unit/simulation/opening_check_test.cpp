@@ -68,6 +68,7 @@ TEST(OpeningCheck, FindsWhatNoIslandHasWritten) {
         [](auto& opening) {
             opening.state.latest_born[0] = {1, 2};
         },
+        [](auto& opening) { opening.state.latest_born[1] = {60, 60, 60, 60, 60, -1}; },
     };
     for (std::size_t i = 0; i < changes.size(); ++i) {
         IslandOpening opening = possible();

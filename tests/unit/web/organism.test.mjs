@@ -74,7 +74,8 @@ test("a predator hunts, handles and dies of old age", () => {
   const predator = info({ species: "SPECIES_PREDATOR", choice: "CHOICE_SEEK", target_x_px: 5, target_y_px: 6 });
   assert.equal(organism.choice_text(predator), "about to hunt prey at (5, 6)");
   assert.equal(organism.choice_text({ ...predator, handling_s: 2.5 }), "handles its prey for another 2.5 s");
-  assert.match(organism.choice_text(info({ choice: "CHOICE_FLEE" }), true), /^about to flee from poison or a predator at/);
+  assert.match(organism.choice_text(info({ choice: "CHOICE_FLEE" })), /^about to flee from poison at/);
+  assert.match(organism.choice_text(info({ choice: "CHOICE_FLEE", flees_predator: true })), /^about to flee from the predator at/);
   const history = new organism.OrganismHistory(place);
   history.add_info(info({ alive: false, cause_of_death: "CAUSE_OF_DEATH_OLD" }));
   assert.equal(organism.fate_text(history), "died of old age after 2.0 s");

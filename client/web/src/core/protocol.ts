@@ -71,8 +71,8 @@ export type CauseOfDeath = "CAUSE_OF_DEATH_UNSPECIFIED"|"CAUSE_OF_DEATH_STARVED"
 /** The action of an organism in the next tick, computed from the current items. If food or poison reappears at the start
  *  of that tick, the action may differ.
  *  CHOICE_UNSPECIFIED: the organism is dead, its generation has ended, or there are no bodies
- *  CHOICE_SEEK: moves towards food
- *  CHOICE_FLEE: moves away from poison
+ *  CHOICE_SEEK: moves towards food; a predator: towards prey
+ *  CHOICE_FLEE: moves away from poison or from a predator
  *  CHOICE_STEER: its neural network steers it */
 export type Choice = "CHOICE_UNSPECIFIED"|"CHOICE_WANDER"|"CHOICE_SEEK"|"CHOICE_FLEE"|"CHOICE_STEER";
 
@@ -513,7 +513,7 @@ export interface OrganismInfo {
   /** kg px/s2; the force in the next tick */
   force_x?: number;
   force_y?: number;
-  /** Position of the food or poison that the organism seeks or flees; its own position otherwise. */
+  /** Position of the item or organism that the organism seeks or flees; its own position otherwise. */
   target_x_px?: number;
   target_y_px?: number;
   /** The organism was placed, or with births was born, after this tick, counted from the start of its generation.
@@ -534,6 +534,8 @@ export interface OrganismInfo {
   children?: number;
   /** of a predator: time until it hunts again */
   handling_s?: number;
+  /** with CHOICE_FLEE: from a predator, not from poison */
+  flees_predator?: boolean;
 }
 
 /** A neural network of one hidden layer, at the start of the next tick. Its weights are the genes of the group `brain`:
@@ -1854,7 +1856,7 @@ export interface Population {
   choices?: Uint8Array;
   /** two columns of f32: x and y in kg px/s2 of the force in the next tick; 0 without a choice */
   forces?: Uint8Array;
-  /** Two columns of f32: x and y in px. The position of the food or poison that the organism seeks or flees; its own
+  /** Two columns of f32: x and y in px. The position of the item or organism that the organism seeks or flees; its own
    *  position if it wanders; 0 without a choice. */
   targets?: Uint8Array;
   /** The next four columns describe the life of the organisms until now. They are empty unless the request asked for them,

@@ -38,8 +38,7 @@ export function fate_text(history: OrganismHistory): string {
   }
 }
 
-/** has_predators: the organism may flee from one. */
-export function choice_text(info: OrganismInfo, has_predators = false): string {
+export function choice_text(info: OrganismInfo): string {
   const x_px = info.target_x_px ?? 0, y_px = info.target_y_px ?? 0;
   if (info.handling_s) {
     return texts.handles(info.handling_s);
@@ -50,7 +49,7 @@ export function choice_text(info: OrganismInfo, has_predators = false): string {
     case "CHOICE_SEEK":
       return info.species === "SPECIES_PREDATOR" ? texts.hunts(x_px, y_px) : texts.seeks(x_px, y_px);
     case "CHOICE_FLEE":
-      return has_predators ? texts.flees_threat(x_px, y_px) : texts.flees(x_px, y_px);
+      return info.flees_predator ? texts.flees_predator(x_px, y_px) : texts.flees(x_px, y_px);
     case "CHOICE_STEER":
       return texts.steers;
     case "CHOICE_UNSPECIFIED":

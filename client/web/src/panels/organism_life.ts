@@ -55,7 +55,7 @@ export class OrganismLife {
     set_text(this.#fate, info ? fate_text(history) : texts.loading);
     this.#fate.classList.toggle("dead", history.dead);
     const acts = info !== null && !history.dead && !history.ended;
-    set_text(this.#action, acts ? choice_text(info, world.feed.drawing?.predators) : "");
+    set_text(this.#action, acts ? choice_text(info) : "");
     this.#action.hidden = !acts;
     this.#follow_row.hidden = !acts;
     this.#follow.checked = world.selection.follow;

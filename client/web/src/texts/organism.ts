@@ -38,7 +38,7 @@ export const organism_texts = {
   wanders: "about to wander",
   seeks: (x_px: number, y_px: number) => `about to seek food at ${place(x_px, y_px)}`,
   flees: (x_px: number, y_px: number) => `about to flee from poison at ${place(x_px, y_px)}`,
-  flees_threat: (x_px: number, y_px: number) => `about to flee from poison or a predator at ${place(x_px, y_px)}`,
+  flees_predator: (x_px: number, y_px: number) => `about to flee from the predator at ${place(x_px, y_px)}`,
   hunts: (x_px: number, y_px: number) => `about to hunt prey at ${place(x_px, y_px)}`,
   handles: (seconds: number) => `handles its prey for another ${tenths(seconds)} s`,
   steers: "steered by its network",

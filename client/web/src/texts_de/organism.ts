@@ -38,7 +38,7 @@ export const organism_texts: typeof english.organism_texts = {
   wanders: "will umherstreifen",
   seeks: (x_px, y_px) => `will Futter suchen bei ${place(x_px, y_px)}`,
   flees: (x_px, y_px) => `will fliehen vor Gift bei ${place(x_px, y_px)}`,
-  flees_threat: (x_px, y_px) => `will fliehen vor Gift oder einem Räuber bei ${place(x_px, y_px)}`,
+  flees_predator: (x_px, y_px) => `will fliehen vor dem Räuber bei ${place(x_px, y_px)}`,
   hunts: (x_px, y_px) => `will Beute jagen bei ${place(x_px, y_px)}`,
   handles: (seconds) => `frisst noch ${tenths(seconds)} s an seiner Beute`,
   steers: "von seinem Netz gesteuert",

@@ -68,7 +68,9 @@ TEST(OrganismPanel, DescribesTheNextAction) {
     it.set_choice(evod::v1::CHOICE_SEEK);
     EXPECT_EQ(shown_choice(it), "about to seek food at (120, 40)");
     it.set_choice(evod::v1::CHOICE_FLEE);
-    EXPECT_EQ(shown_choice(it), "about to flee from (120, 40)");
+    EXPECT_EQ(shown_choice(it), "about to flee from poison at (120, 40)");
+    it.set_flees_predator(true);
+    EXPECT_EQ(shown_choice(it), "about to flee from the predator at (120, 40)");
     it.set_choice(evod::v1::CHOICE_STEER);
     EXPECT_EQ(shown_choice(it), "steered by its network");
 }
