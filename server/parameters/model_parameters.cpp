@@ -388,6 +388,24 @@ Parameters of_predators(Parameters p) {
 
 namespace {
 
+/// The greatest number of living organisms on an island, of both species.
+double organisms_max(const Parameters& p) {
+    const double predators = p.predator_count;
+    if (!has_births(p)) {
+        return p.population_size + predators;
+    }
+    return std::max(p.population_size, p.population_max) +
+           (predators > 0 ? std::max(p.predator_count, p.predator_population_max) : 0.0);
+}
+
+} // namespace
+
+std::uint64_t interval_organisms_max(const Parameters& p) {
+    return static_cast<std::uint64_t>(4 * organisms_max(p));
+}
+
+namespace {
+
 /// The genes of all organisms together: 4 million organisms with a network of 25 weights, or 1.9 million with 58.
 constexpr std::uint64_t genes_max = 124'000'000;
 
@@ -426,16 +444,6 @@ class Faults {
     const std::string prefix_;
     std::vector<base::Violation> found_;
 };
-
-/// The greatest number of living organisms on an island, of both species.
-double organisms_max(const Parameters& p) {
-    const double predators = p.predator_count;
-    if (!has_births(p)) {
-        return p.population_size + predators;
-    }
-    return std::max(p.population_size, p.population_max) +
-           (predators > 0 ? std::max(p.predator_count, p.predator_population_max) : 0.0);
-}
 
 void check_orders(const Parameters& p, Faults& faults) {
     faults.require_order("initial_gene_max", p.initial_gene_max, "initial_gene_min", p.initial_gene_min);
@@ -497,8 +505,7 @@ void check_totals(const Parameters& p, Faults& faults) {
                       "at most 4000000 organisms on all islands together",
                       std::to_string(p.island_count) + " islands with a total of " + number_text(living));
     }
-    // With births, the chromosomes of the dead are kept until the interval ends.
-    const double organisms = has_births(p) ? 4 * living : living;
+    const double organisms = has_births(p) ? static_cast<double>(p.island_count * interval_organisms_max(p)) : living;
     faults.require_order("brain_weight_limit", p.brain_weight_limit, "brain_weight_initial", p.brain_weight_initial);
     if (p.controller == evolution::Controller::Network && evolution::has_body_genes(p)) {
         if (evolution::brain_layout(p).inputs.empty()) {

@@ -133,6 +133,9 @@ Parameters of_predators(Parameters parameters);
 inline bool has_births(const Parameters& parameters) {
     return parameters.reproduction == Reproduction::Births;
 }
+/// With births: if so many organisms of both species, alive or dead, have lived on an island in an interval, there are
+/// no births until its end.
+std::uint64_t interval_organisms_max(const Parameters& parameters);
 
 /// A parameter value in files, options and messages. A choice is represented by its name.
 using ParameterValue = std::variant<double, std::uint32_t, bool, std::string>;

@@ -31,8 +31,10 @@ class BirthTable {
                  {"generation", "island", "organism", "number", "species", "born_tick", "died_tick", "cause",
                   "parent_first_number", "parent_second_number", "children"}} {}
 
-    /// Adds an interval of an island, which follows those that were added before. The lives that it ends are written.
-    void add(const WholeGeneration& whole, std::size_t island);
+    /// Adds an interval of an island. The lives that it ends are written.
+    ///
+    /// follows  whether the interval that was added before is the previous one.
+    void add(const WholeGeneration& whole, std::size_t island, bool follows);
     /// Writes the lives of all that were alive at the end of the last interval.
     void write_living() {
         for (std::size_t island = 0; island < living_.size(); ++island) {
@@ -78,7 +80,7 @@ void BirthTable::write_missing(std::size_t island, std::string_view cause, std::
     });
 }
 
-void BirthTable::add(const WholeGeneration& whole, std::size_t island) {
+void BirthTable::add(const WholeGeneration& whole, std::size_t island, bool follows) {
     const Origins origins = origins_of(whole, island);
     const simulation::Moment& begun = whole.begun.opening.moment;
     const simulation::IslandOpening* opening = whole.begun.openings.empty() ? nullptr : &whole.begun.openings[island];
@@ -90,7 +92,7 @@ void BirthTable::add(const WholeGeneration& whole, std::size_t island) {
     };
     living_.resize(whole.begun.born.size());
     if (opening) {
-        write_missing(island, "replaced", opening->numbers); // a migrant has its place
+        write_missing(island, follows ? "replaced" : "unknown", opening->numbers); // a migrant has its place
     }
     Living& living = living_[island];
     for (std::size_t organism = 0; organism < origins.organism_count() && can_write(); ++organism) {
@@ -133,8 +135,16 @@ Result<void> write_births(const RunSource& run, std::ostream& out, Table::Format
     BirthTable table{out, format};
     GenerationReader reader{file, run.executor, run.stop};
     const std::uint64_t last = file.generations().last();
+    bool follows = true;
     for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation) {
+        if (run.stop()) {
+            return cancelled_refusal();
+        }
         if (!can_be_read(file, generation)) {
+            if (auto begun = expect_generation(file, generation); !begun) {
+                return begun;
+            }
+            follows = false;
             continue;
         }
         const auto whole = reader.read(generation);
@@ -142,8 +152,9 @@ Result<void> write_births(const RunSource& run, std::ostream& out, Table::Format
             return whole.error();
         }
         for (std::size_t island = 0; island < whole->begun.born.size(); ++island) {
-            table.add(*whole, island);
+            table.add(*whole, island, follows);
         }
+        follows = true;
     }
     table.write_living();
     return {};

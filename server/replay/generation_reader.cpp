@@ -11,6 +11,21 @@ using base::Refusal;
 using base::Result;
 using evolution::NextGeneration;
 
+Result<void> expect_generation(run_file::RunFile& file, std::uint64_t generation) {
+    const auto opening = file.generations().opening_of(generation);
+    if (!opening) {
+        return opening.error();
+    }
+    if (!*opening) {
+        return Refusal{.code = base::RefusalCode::DataLoss,
+                       .message = file.path() + " is damaged: it contains generation " +
+                                  std::to_string(file.generations().last()) + ", but not generation " +
+                                  std::to_string(generation),
+                       .violations = {}};
+    }
+    return {};
+}
+
 Refusal GenerationReader::damaged(std::uint64_t generation, const std::string& what) const {
     return {.code = base::RefusalCode::DataLoss,
             .message = file_.path() + " is damaged: generation " + std::to_string(generation) + " " + what,
@@ -21,10 +36,7 @@ Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
     if (stop_()) {
         return cancelled_refusal();
     }
-    const bool retained = file_.retention().at_or_before(generation) == generation;
-    const bool is_stored =
-        !has_births() || (needed_ == Chromosomes::OfBeginning && generation <= file_.generations().last_ended());
-    auto whole = retained && is_stored ? read_stored(generation) : simulate(generation);
+    auto whole = is_stored(file_, generation, needed_) ? read_stored(generation) : simulate(generation);
     if (!whole) {
         return whole;
     }

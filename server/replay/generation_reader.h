@@ -28,13 +28,22 @@ struct WholeGeneration {
 /// these need a simulation. Without them, they are 0.
 enum class Chromosomes { OfAll, OfBeginning };
 
-/// Whether a generation that has begun can be read: it is retained, or this program can simulate it again.
+/// Whether a generation that has begun can be read without a simulation: it is retained. With births also: the
+/// interval has ended, because only then its births are stored.
+inline bool is_stored(run_file::RunFile& file, std::uint64_t generation, Chromosomes needed) {
+    return file.retention().at_or_before(generation) == generation &&
+           (!parameters::has_births(file.identity().parameters) ||
+            (needed == Chromosomes::OfBeginning && generation <= file.generations().last_ended()));
+}
+/// Whether a generation that has begun can be read: it is stored, or this program can simulate it again.
 inline bool can_be_read(run_file::RunFile& file, std::uint64_t generation,
                         Chromosomes needed = Chromosomes::OfBeginning) {
-    const bool is_stored = file.retention().at_or_before(generation) == generation &&
-                           (needed == Chromosomes::OfBeginning || !parameters::has_births(file.identity().parameters));
-    return is_stored || !file.other_model();
+    return is_stored(file, generation, needed) || !file.other_model();
 }
+
+/// Refused if the file does not contain the beginning of a generation up to its last one. If the number of the last one
+/// is damaged, it may be very large.
+base::Result<void> expect_generation(run_file::RunFile& file, std::uint64_t generation);
 
 class GenerationReader {
   public:

@@ -217,17 +217,7 @@ Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, 
             return cancelled_refusal();
         }
         if (!can_be_read(file, generation)) {
-            const auto opening = file.generations().opening_of(generation);
-            if (!opening) {
-                return opening.error();
-            }
-            if (!*opening) { // if the number of the last generation is damaged, it may be very large
-                return Refusal{.code = base::RefusalCode::DataLoss,
-                               .message = file.path() + " is damaged: it contains generation " + std::to_string(last) +
-                                          ", but not generation " + std::to_string(generation),
-                               .violations = {}};
-            }
-            return {};
+            return expect_generation(file, generation);
         }
         auto whole = reader.read(generation);
         if (!whole) {

@@ -28,15 +28,8 @@ Result<void> for_each_generation(const RunSource& run, const std::ostream& out, 
         if (run.stop()) {
             return cancelled_refusal();
         }
-        const auto opening = file.generations().opening_of(generation);
-        if (!opening) {
-            return opening.error();
-        }
-        if (!*opening) { // if the number of the last generation is damaged, it may be very large
-            return Refusal{.code = base::RefusalCode::DataLoss,
-                           .message = file.path() + " is damaged: it contains generation " + std::to_string(last) +
-                                      ", but not generation " + std::to_string(generation),
-                           .violations = {}};
+        if (auto begun = expect_generation(file, generation); !begun) {
+            return begun;
         }
         if (generation % run.every != 0 && generation != last) {
             continue;

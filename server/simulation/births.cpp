@@ -24,9 +24,11 @@ constexpr std::size_t latest_births = 256;
 /// The search for parents and for places of their children in one tick.
 class Island::Nursery {
   public:
-    Nursery(Island& island, std::uint32_t tick)
+    /// parameters  of the prey.
+    Nursery(Island& island, const parameters::Parameters& parameters, std::uint32_t tick)
         : island_{island}
         , tick_{tick}
+        , organisms_max_{parameters::interval_organisms_max(parameters)}
         , boxes_{island.area_, island.boxes_}
         , room_{island.area_, island.alive_count_}
         , has_child_(island.bodies_.size()) {
@@ -61,6 +63,7 @@ class Island::Nursery {
 
     Island& island_;
     std::uint32_t tick_;
+    std::uint64_t organisms_max_; // alive or dead, in this interval
     BoxGrid boxes_;
     PlacedCircles room_;          // all living bodies, and the children
     std::vector<bool> has_child_; // by body
@@ -131,7 +134,6 @@ void Island::Nursery::search(Species species, const parameters::Parameters& para
     const bool is_shuffled = pool.cols() > 0;
     const evolution::Descent<> descent{is_shuffled ? pool : island_.born_.genes, parameters, key};
     const auto cost = static_cast<float>(parameters.birth_cost);
-    const std::uint64_t slots_max = 4 * std::uint64_t{parameters.population_max};
 
     std::uint32_t born = 0;
     for (const std::uint32_t body : found) {
@@ -147,7 +149,7 @@ void Island::Nursery::search(Species species, const parameters::Parameters& para
             continue;
         }
         if (counts.living + born >= parameters.population_max ||
-            island_.life_records_.cause.size() + children.size() >= 2 * slots_max) {
+            island_.life_records_.cause.size() + children.size() >= organisms_max_) {
             ++counts.refused;
             continue;
         }
@@ -193,7 +195,7 @@ bool Island::births_are_due(const parameters::Parameters& parameters, std::uint3
 }
 
 void Island::give_birth(const parameters::Parameters& parameters, std::uint32_t tick) {
-    Nursery nursery{*this, tick};
+    Nursery nursery{*this, parameters, tick};
     nursery.search(Species::Prey, parameters);
     if (has_predators()) {
         nursery.search(Species::Predator, parameters::of_predators(parameters));

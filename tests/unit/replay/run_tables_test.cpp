@@ -61,6 +61,28 @@ class OtherModel : public testing::Test {
     std::vector<std::string> lines;
 };
 
+TEST_F(OtherModel, LivesThatEndWithinAGapHaveAnUnknownCause) {
+    parameters::Parameters colony = recording::small_world();
+    colony.reproduction = parameters::Reproduction::Births;
+    colony.births = parameters::Births::Asexual;
+    colony.lifespan_s = 3 * colony.generation_s;
+    colony.migration_epoch = 100;
+    record(colony);
+    ASSERT_TRUE(write({.table = RunTable::Births}));
+    std::size_t unknown = 0;
+    for (const std::string& line : lines) {
+        unknown += line.find(",unknown,") != std::string::npos;
+        EXPECT_THAT(line, testing::Not(HasSubstr(",replaced,"))) << "there are no migrants";
+    }
+    EXPECT_GT(unknown, 0u);
+
+    int asked = 0;
+    const base::StopCheck stop{[&] { return ++asked > 2; }};
+    std::ostringstream part;
+    EXPECT_FALSE(write_table({*file, executor, stop}, {.table = RunTable::Births}, part));
+    EXPECT_EQ(asked, 3);
+}
+
 /// Every table asks often whether it is to stop, also about generations that it leaves out.
 TEST_F(OtherModel, StoppedTablesEndAtTheNextGeneration) {
     record(recording::small_world());

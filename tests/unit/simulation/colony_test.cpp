@@ -128,6 +128,25 @@ TEST_F(QuietIsland, BirthsEndAtTheGreatestPopulation) {
     EXPECT_EQ(island.colony_counts()[0].refused, 1u);
 }
 
+TEST_F(QuietIsland, ManyPreyDoNotEndTheBirthsOfPredators) {
+    parameters.birth_health = 10'000;
+    parameters.predator_births = Births::Asexual;
+    parameters.predator_birth_health = 100;
+    parameters.predator_population_max = 2;
+    std::vector<Place> places;
+    for (int i = 0; i < 30; ++i) {
+        places.push_back(at(30 + 40 * (i % 10), 100 + 100 * (i / 10)));
+    }
+    begin(std::vector(30, with_health(60)), 1);
+    move(places);
+    IslandState state = island.state(executor);
+    state.organisms[29].health = 1'000;
+    island.restore(state, now, parameters, executor);
+    tick();
+    EXPECT_EQ(island.colony_counts()[1].born, 1u);
+    EXPECT_EQ(island.colony_counts()[1].refused, 0u);
+}
+
 TEST_F(QuietIsland, AChildNeedsRoom) {
     parameters.island_width_px = parameters.island_height_px = 100;
     parameters.birth_health = 0;
@@ -243,6 +262,27 @@ TEST(Colony, IsTheSameOnAnyNumberOfThreads) {
         EXPECT_GT(a.moment().generation, 3u);
         EXPECT_GT(a.history().back().front().colony->born_count, 0u);
     }
+}
+
+TEST(Colony, AnIntervalHasAMostOrganisms) {
+    parameters::Parameters p = colony(false);
+    p.births = Births::Asexual;
+    p.birth_health = 80;
+    p.birth_cost = 0;
+    p.mutation_chance = 0;
+    p.initial_gene_min = p.initial_gene_max = 60;
+    p.food_count = 500;
+    p.lifespan_s = 6;
+    p.population_size = 10;
+    p.population_max = 12;
+    p.generation_s = 60;
+    World world{p, base::Seed{7}};
+    base::InlineExecutor executor;
+    while (!world.generation_over()) {
+        world.advance_tick(executor);
+    }
+    EXPECT_EQ(parameters::interval_organisms_max(p), 4u * 12u);
+    EXPECT_EQ(world.island(0).life_records().cause.size(), 4u * 12u);
 }
 
 /// Σ over all living organisms of their health.
