@@ -87,12 +87,12 @@ bool can_live_with(evolution::ConstGenes genes) {
 }
 
 bool are_chromosomes(std::span<const float> genes, std::size_t gene_count) {
-    for (; genes.size() >= gene_count; genes = genes.subspan(gene_count)) {
-        if (!can_live_with(genes.first(gene_count))) {
+    for (; !genes.empty(); genes = genes.subspan(gene_count)) {
+        if (genes.size() < gene_count || !can_live_with(genes.first(gene_count))) {
             return false;
         }
     }
-    return genes.empty();
+    return true;
 }
 
 const char* Island::fault_of_arrivals(const IslandState& state, std::uint32_t tick) const {

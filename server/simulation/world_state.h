@@ -60,7 +60,7 @@ constexpr float health_reachable = 0x1p38f;
 
 /// Whether an organism can have these genes, whatever their bounds were when it was born.
 bool can_live_with(evolution::ConstGenes genes);
-/// Whether these are chromosomes of organisms, one after the other.
+/// Whether these are chromosomes of organisms with bodies, one after the other.
 bool are_chromosomes(std::span<const float> genes, std::size_t gene_count);
 
 /// Whether a tick can have left a body, which has x, y, velocity_x and velocity_y, on an island of this size.
